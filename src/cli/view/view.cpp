@@ -153,7 +153,9 @@ void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& pro
     viewer::SceneSource source(std::move(view.contents), *view.finder);
     source.load([&](double done) { progress.show(finding_pairs, done); });
     if (source.moving()) {
-        const auto show = [&](std::uint64_t done) { progress.show(finding_pairs, double(done) / double(source.frames())); };
+        const auto show = [&](std::uint64_t done) {
+            progress.show(finding_pairs, double(done) / double(source.frames()));
+        };
         source.count_frames(show, stop);
     }
     throw_if_stopped(stop);
