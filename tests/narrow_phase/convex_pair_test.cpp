@@ -336,6 +336,57 @@ TEST(ConvexPair, SizesDownToTheLeastNumbers) {
     }
 }
 
+/// Multiplies all lengths of a shape by a power of two.
+shape::Any scaled_shape(shape::Any shape, int exponent) {
+    const auto scale = [exponent](double& length) { length = std::ldexp(length, exponent); };
+    if (auto* sphere = std::get_if<shape::Sphere>(&shape)) scale(sphere->radius);
+    if (auto* box = std::get_if<shape::Box>(&shape))
+        std::for_each(box->half_extents.begin(), box->half_extents.end(), scale);
+    if (auto* capsule = std::get_if<shape::Capsule>(&shape)) scale(capsule->radius), scale(capsule->length);
+    if (auto* cylinder = std::get_if<shape::Cylinder>(&shape)) scale(cylinder->radius), scale(cylinder->length);
+    if (auto* cone = std::get_if<shape::Cone>(&shape)) scale(cone->radius), scale(cone->length);
+    if (auto* ellipsoid = std::get_if<shape::Ellipsoid>(&shape))
+        std::for_each(ellipsoid->radii.begin(), ellipsoid->radii.end(), scale);
+    if (auto* hull = std::get_if<shape::ConvexHull>(&shape)) {
+        for (Point3d& point : hull->points) std::for_each(point.begin(), point.end(), scale);
+    }
+    return shape;
+}
+
+Thing scaled_thing(const Thing& thing, int exponent) {
+    Pose pose = thing.posed.pose;
+    for (auto& row : pose.rows) row[3] = std::ldexp(row[3], exponent);
+    return {scaled_shape(thing.posed.shape, exponent), pose};
+}
+
+TEST(ConvexPair, EveryScaleGivesTheSameAnswers) {
+    RandomStream random(12, 0);
+    for (int kind_a = 0; kind_a < kinds; ++kind_a) {
+        for (int kind_b = 0; kind_b < kinds; ++kind_b) {
+            const Thing a(random_shape(kind_a, random), random_pose(random, 1)),
+                b(random_shape(kind_b, random), random_pose(random, 1));
+            const Thing within(scaled_shape(a.posed.shape, -4), a.posed.pose);
+            for (const int exponent : {-900, -500, -274, -199, 199, 257, 500, 900}) {
+                SCOPED_TRACE("kinds " + std::to_string(kind_a) + ", " + std::to_string(kind_b) + ", scale 2^" +
+                             std::to_string(exponent));
+                const Thing big_a = scaled_thing(a, exponent), big_b = scaled_thing(b, exponent);
+                const ConvexGap apart = convex_gap(a.convex(), b.convex()),
+                                found = convex_gap(big_a.convex(), big_b.convex());
+                EXPECT_EQ(found.distance, std::ldexp(apart.distance, exponent));
+                EXPECT_EQ(found.at_least, std::ldexp(apart.at_least, exponent));
+                EXPECT_EQ(found.on_a[0], std::ldexp(apart.on_a[0], exponent));
+                EXPECT_EQ(contact(big_a, big_b).depth, std::ldexp(contact(a, b).depth, exponent));
+                EXPECT_EQ(contact(big_a, big_b).point[1], std::ldexp(contact(a, b).point[1], exponent));
+                EXPECT_EQ(meet(big_a, big_b), meet(a, b));
+                EXPECT_EQ(convex_within(big_a.convex(), big_b.convex(), std::ldexp(0.25, exponent)),
+                          convex_within(a.convex(), b.convex(), 0.25));
+                EXPECT_EQ(convex_contains(big_a.convex(), scaled_thing(within, exponent).convex()),
+                          convex_contains(a.convex(), within.convex()));
+            }
+        }
+    }
+}
+
 TEST(ConvexPair, TouchingMeetsAndAHairBeyondDoesNot) {
     const auto touch_along = [](const Thing& a, const Thing& b, const Point3d& way, double distance) {
         EXPECT_TRUE(meet(a, b.moved(times(way, distance))));

@@ -1,142 +1,98 @@
 // convex_contains(): whether one convex object lies inside another, below its surface.
 //
-// Height    A sphere, capsule, box, cylinder, cone and ellipsoid each have a convex function: the height of a point above
-//           their surface, below 0 inside.
-// Search    Hill climbing from many directions finds the highest point of the inner object: the next point is the farthest
-//           in the direction of the height's gradient. The search ends when the height no longer increases.
-// Result    The maximum is global for points and flat sides. Between two curved surfaces it is a local maximum.
+// Parts     The inner object is the convex hull of points, of balls, and of ellipsoids, which may be flat: the ends of a cylinder are
+//           disks. A convex object contains all if it contains each part (below_surface.hpp).
 // Hulls     A hull contains a ball if the ball's centre is deeper than its radius. It contains an ellipsoid if this holds in
-//           coordinates where the ellipsoid is a ball. It contains another solid if it contains all corners of a polyhedron
-//           around that solid, with 64 sides where the solid is round.
+//           coordinates where the ellipsoid is a ball. It contains a disk if it contains a polygon around the disk, which gets more
+//           corners where they are not inside. Without a proof after many corners, the disk counts as not contained.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "geometry/vector.hpp"
+#include "narrow_phase/convex/below_surface.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
+#include "narrow_phase/convex/scaled_pair.hpp"
 
 namespace octopair {
 namespace {
 
 using Core = ConvexSolid::Core;
 
-struct Height {
-    double above;    ///< height above the surface, about a length near it; below 0 inside
-    Point3d uphill;  ///< direction of the gradient, of any length
+/// Objects whose convex hull is a convex object: balls, and the flat or solid ellipsoids that `map` makes of the unit ball.
+struct Parts {
+    std::vector<Point3d> centres;
+    double radius = 0;
+    std::vector<Ellipsoid> ellipsoids;
 };
 
-Height above_rim(double across, double along_axis, const Point3d& at) {
-    const double distance = std::hypot(at[0], at[1]);
-    if (distance == 0) return {0, {across, 0, along_axis}};
-    return {across * distance, {across * at[0] / distance, across * at[1] / distance, along_axis}};
+Eigen::Vector3d from(const Point3d& point) { return {point[0], point[1], point[2]}; }
+Point3d from(const Eigen::Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
+
+Eigen::Matrix3d linear_part(const Pose& pose) {
+    Eigen::Matrix3d linear;
+    for (int axis = 0; axis < 3; ++axis) linear.col(axis) = from(vector::column(pose, std::size_t(axis)));
+    return linear;
 }
 
-Height higher(const Height& a, const Height& b) { return a.above >= b.above ? a : b; }
-
-Height above_box(const Point3d& extents, const Point3d& at) {
-    Height height = {-std::numeric_limits<double>::infinity(), {}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        Height side = {std::fabs(at[axis]) - extents[axis], {}};
-        side.uphill[axis] = std::copysign(1, at[axis]);
-        height = higher(height, side);
+/// Returns the corners of a box around the origin.
+std::vector<Point3d> corners_of_box(const Point3d& extents) {
+    std::vector<Point3d> corners;
+    for (const double x : {-1.0, 1.0}) {
+        for (const double y : {-1.0, 1.0}) {
+            for (const double z : {-1.0, 1.0}) corners.push_back({x * extents[0], y * extents[1], z * extents[2]});
+        }
     }
-    return height;
+    return corners;
 }
 
-Height above_cylinder(const Point3d& extents, const Point3d& at) {
-    Height wall = above_rim(1, 0, at);
-    wall.above -= extents[0];
-    return higher(wall, {std::fabs(at[2]) - extents[2], {0, 0, std::copysign(1, at[2])}});
-}
-
-Height above_cone(const Point3d& extents, const Point3d& at) {
-    const double slant = std::hypot(extents[0], 2 * extents[2]);
-    const double across = 2 * extents[2] / slant, along = extents[0] / slant;
-    Height wall = above_rim(across, along, at);
-    wall.above += along * (at[2] - extents[2]);
-    return higher(wall, {-extents[2] - at[2], {0, 0, -1}});
-}
-
-Height above_ellipsoid(const Point3d& radii, const Point3d& at) {
-    const Point3d scaled = {at[0] / radii[0], at[1] / radii[1], at[2] / radii[2]};
-    const double least = std::min({radii[0], radii[1], radii[2]});
-    return {(vector::length(scaled) - 1) * least, {scaled[0] / radii[0], scaled[1] / radii[1], scaled[2] / radii[2]}};
-}
-
-/// Height above a capsule, or above a sphere, whose two end points are equal.
-Height above_capsule(const ConvexSolid& solid, const Point3d& at) {
-    const Point3d from = solid.points.front(), way = vector::minus(solid.points.back(), from);
-    const double squared = vector::dot(way, way);
-    const double part = squared > 0 ? vector::dot(vector::minus(at, from), way) / squared : 0;
-    const Point3d foot = vector::plus(from, vector::times(way, std::clamp(part, 0.0, 1.0)));
-    const Point3d uphill = vector::minus(at, foot);
-    return {vector::length(uphill) - solid.radius, uphill};
-}
-
-Height above(const ConvexSolid& solid, const Point3d& at) {
+/// Returns the parts of a solid that is not made of points, in its own coordinates.
+Parts parts_of(const ConvexSolid& solid) {
+    const Point3d& extents = solid.extents;
+    const auto disk_at = [&](double z) {
+        return Ellipsoid{{0, 0, z}, Eigen::Vector3d(extents[0], extents[1], 0).asDiagonal()};
+    };
     switch (solid.core) {
-        case Core::points:
-            return above_capsule(solid, at);
         case Core::box:
-            return above_box(solid.extents, at);
+            return {corners_of_box(extents), 0, {}};
         case Core::cylinder:
-            return above_cylinder(solid.extents, at);
+            return {{}, 0, {disk_at(-extents[2]), disk_at(extents[2])}};
         case Core::cone:
-            return above_cone(solid.extents, at);
+            return {{{0, 0, extents[2]}}, 0, {disk_at(-extents[2])}};
+        case Core::points:
         case Core::ellipsoid:
             break;
     }
-    return above_ellipsoid(solid.extents, at);
+    return {{}, 0, {{{0, 0, 0}, from(extents).asDiagonal()}}};
 }
 
-/// Returns the 26 directions from the centre of a cube to its faces, edges and corners.
-std::vector<Point3d> all_sides() {
-    std::vector<Point3d> sides;
-    for (const double x : {-1.0, 0.0, 1.0}) {
-        for (const double y : {-1.0, 0.0, 1.0}) {
-            for (const double z : {-1.0, 0.0, 1.0}) {
-                if (x != 0 || y != 0 || z != 0) sides.push_back({x, y, z});
-            }
-        }
-    }
-    return sides;
+/// Returns the parts of an object in the local coordinates of a pair.
+Parts parts_of(const PosedConvex& convex, const LocalConvex& local) {
+    if (!convex.solid() || convex.solid()->core == Core::points) return {local.all_points(), local.radius(), {}};
+    Parts parts = parts_of(*convex.solid());
+    const Eigen::Matrix3d turn = linear_part(local.pose());
+    for (Point3d& centre : parts.centres) centre = vector::posed(local.pose(), centre);
+    for (Ellipsoid& one : parts.ellipsoids)
+        one = {turn * one.centre + from(vector::place(local.pose())), turn * one.map};
+    return parts;
 }
 
-Point3d farthest(const LocalConvex& convex, const Point3d& direction) {
-    const double length = vector::length(direction);
-    const Point3d core = convex.support(direction);
-    return length > 0 ? vector::plus(core, vector::times(direction, convex.radius() / length)) : core;
-}
-
-/// Returns true if all points of `inner` are more than `slack` below the surface of `outer`. `solid` is the solid of `outer`.
-bool stays_below(const ConvexSolid& solid, const LocalConvex& outer, const LocalConvex& inner, double slack) {
+/// Returns true if all parts are more than `slack` below the surface of a solid that is not a hull.
+bool are_below(const ConvexSolid& solid, const Pose& pose, const Parts& parts, double slack) {
     // The pose is a rotation up to rounding, so its transpose is its inverse.
-    const Pose& pose = outer.pose();
-    const auto height_at = [&](const Point3d& point) {
-        return above(solid, vector::turned_back(pose, vector::minus(point, vector::place(pose))));
+    const Eigen::Matrix3d turn_back = linear_part(pose).transpose();
+    const auto in_solid = [&](const Ellipsoid& one) {
+        return Ellipsoid{turn_back * (one.centre - from(vector::place(pose))), turn_back * one.map};
     };
-    const auto stays = [&](Point3d direction) {
-        double highest = -std::numeric_limits<double>::infinity();
-        for (int step = 0; step < 64; ++step) {
-            const Height height = height_at(farthest(inner, direction));
-            if (height.above >= -slack) return false;
-            if (!(height.above > highest)) return true;
-            highest = height.above;
-            direction = vector::turned(pose, height.uphill);
-        }
-        return true;
+    const auto ball_is_below = [&](const Point3d& centre) {
+        const Ellipsoid ball = in_solid({from(centre), parts.radius * Eigen::Matrix3d::Identity()});
+        if (solid.core == Core::ellipsoid && parts.radius > 0) return is_below(solid, ball, slack);
+        return height_above(solid, from(ball.centre)) + parts.radius < -slack;
     };
-    const std::vector<Point3d> points = inner.all_points();
-    for (const Point3d& point : points) {
-        if (height_at(point).above >= -slack) return false;
-    }
-    if (!points.empty() && inner.radius() == 0) return true;
-    for (const Point3d& side : all_sides()) {
-        if (!stays(vector::turned(pose, side)) || !stays(vector::turned(inner.pose(), side))) return false;
-    }
-    return stays(vector::minus(inner.middle(), vector::place(pose)));
+    return std::all_of(parts.centres.begin(), parts.centres.end(), ball_is_below) &&
+           std::all_of(parts.ellipsoids.begin(), parts.ellipsoids.end(),
+                       [&](const Ellipsoid& one) { return is_below(solid, in_solid(one), slack); });
 }
 
 /// Returns the largest deviation of the pose's linear part from a rotation.
@@ -151,28 +107,12 @@ double rotation_error(const Pose& pose) {
     return most;
 }
 
-/// Returns the corners of a polyhedron that contains a cylinder or a cone.
-std::vector<Point3d> corners_around(const ConvexSolid& solid) {
-    constexpr int sides = 64;
-    const double radius = solid.extents[0] / std::cos(std::numbers::pi / sides) * (1 + 1e-12);
-    const double half = solid.extents[2];
-    std::vector<Point3d> corners;
-    for (int i = 0; i < sides; ++i) {
-        const double angle = 2 * std::numbers::pi * i / sides;
-        const double x = radius * std::cos(angle), y = radius * std::sin(angle);
-        corners.push_back({x, y, -half});
-        if (solid.core == Core::cylinder) corners.push_back({x, y, half});
-    }
-    if (solid.core == Core::cone) corners.push_back({0, 0, half});
-    return corners;
-}
-
-/// Returns true if `point` lies in the hull and is deeper than `depth`.
+/// Returns true if `point` is proven to be deeper in the hull than `depth`.
 bool is_deep(const PosedConvex& hull, const Point3d& point, double depth) {
     const PosedConvex inner(point);
     if (!convex_meet(hull, inner)) return false;
     const LocalConvexPair pair(hull, inner);
-    return convex_contact(hull, inner).depth > depth + 4 * pair.slack();
+    return convex_depth_at_least(hull, inner) > depth + 4 * pair.slack();
 }
 
 /// Returns the hull's pose in the coordinates in which the ellipsoid is the unit ball at the origin.
@@ -186,28 +126,41 @@ Pose pose_relative_to_ball(const Pose& hull, const Pose& ellipsoid, const Point3
     return relative;
 }
 
-bool hull_contains(const PosedConvex& hull, const PosedConvex& inner) {
-    if (inner.point()) return is_deep(hull, *inner.point(), 0);
-    const auto contains_all = [&](const auto& points, double radius) {
-        return std::all_of(points.begin(), points.end(), [&](const Point3d& at) { return is_deep(hull, at, radius); });
+bool hull_contains_disk(const PosedConvex& hull, const Ellipsoid& disk) {
+    constexpr int first_arcs = 8, most_corners = 4096;
+    const auto at = [&](double angle, double distance) {
+        return from(
+            Eigen::Vector3d(disk.centre + disk.map * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0) * distance));
     };
-    if (inner.triangle()) return contains_all(*inner.triangle(), 0);
-    const ConvexSolid& solid = *inner.solid();
-    if (solid.core == Core::ellipsoid) {
-        const Pose relative = pose_relative_to_ball(*hull.pose(), *inner.pose(), solid.extents);
-        return is_deep(PosedConvex(*hull.solid(), relative), {0, 0, 0}, 1 + 4 * rotation_error(*inner.pose()));
+    // An arc lies in the triangle of its ends and the corner in which the tangents of its ends meet.
+    struct Arc {
+        double middle, half;
+    };
+    std::vector<Arc> arcs;
+    for (int i = 0; i < first_arcs; ++i) {
+        arcs.push_back({2 * std::numbers::pi * i / first_arcs, std::numbers::pi / first_arcs});
     }
-    std::vector<Point3d> points = solid.points;
-    if (solid.core == Core::box) {
-        for (Point3d corner : all_sides()) {
-            if (corner[0] == 0 || corner[1] == 0 || corner[2] == 0) continue;
-            for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] *= solid.extents[axis];
-            points.push_back(corner);
-        }
+    for (int corners = 0; !arcs.empty(); ++corners) {
+        const auto [middle, half] = arcs.back();
+        if (corners == most_corners || !is_deep(hull, at(middle, 1), 0)) return false;
+        arcs.pop_back();
+        if (is_deep(hull, at(middle, (1 + 1e-12) / std::cos(half)), 0)) continue;
+        arcs.push_back({middle - half / 2, half / 2});
+        arcs.push_back({middle + half / 2, half / 2});
     }
-    if (solid.core == Core::cylinder || solid.core == Core::cone) points = corners_around(solid);
-    for (Point3d& point : points) point = vector::posed(*inner.pose(), point);
-    return contains_all(points, solid.radius);
+    return true;
+}
+
+bool hull_contains(const PosedConvex& hull, const PosedConvex& inner, const LocalConvex& local_inner) {
+    const Parts parts = parts_of(inner, local_inner);
+    const auto contains_ball = [&](const Point3d& centre) { return is_deep(hull, centre, parts.radius); };
+    if (!std::all_of(parts.centres.begin(), parts.centres.end(), contains_ball)) return false;
+    if (inner.solid() && inner.solid()->core == Core::ellipsoid) {
+        const Pose relative = pose_relative_to_ball(*hull.pose(), local_inner.pose(), inner.solid()->extents);
+        return is_deep(PosedConvex(*hull.solid(), relative), {0, 0, 0}, 1 + 4 * rotation_error(local_inner.pose()));
+    }
+    return std::all_of(parts.ellipsoids.begin(), parts.ellipsoids.end(),
+                       [&](const Ellipsoid& disk) { return hull_contains_disk(hull, disk); });
 }
 
 }  // namespace
@@ -215,12 +168,18 @@ bool hull_contains(const PosedConvex& hull, const PosedConvex& inner) {
 bool convex_contains(const PosedConvex& outer, const PosedConvex& inner) {
     if (!outer.solid()) return false;
     const ConvexSolid& solid = *outer.solid();
-    if (solid.core == Core::points && solid.radius == 0) return hull_contains(outer, inner);
     const LocalConvexPair pair(outer, inner);
+    if (ScaledPair::is_needed(pair)) {
+        const ScaledPair scaled(outer, inner, pair);
+        return convex_contains(scaled.a(), scaled.b());
+    }
     const LocalConvex& local_outer = pair.swapped() ? pair.b() : pair.a();
     const LocalConvex& local_inner = pair.swapped() ? pair.a() : pair.b();
+    if (solid.core == Core::points && solid.radius == 0) {
+        return hull_contains(PosedConvex(solid, local_outer.pose()), inner, local_inner);
+    }
     const double slack = 4 * pair.slack() + rotation_error(*outer.pose()) * local_outer.magnitude();
-    return stays_below(solid, local_outer, local_inner, slack);
+    return are_below(solid, local_outer.pose(), parts_of(inner, local_inner), slack);
 }
 
 }  // namespace octopair

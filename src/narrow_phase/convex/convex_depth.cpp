@@ -11,6 +11,7 @@
 #include "narrow_phase/convex/difference_hull.hpp"
 #include "narrow_phase/convex/least_overlap.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
+#include "narrow_phase/convex/scaled_pair.hpp"
 
 namespace octopair {
 namespace {
@@ -35,6 +36,11 @@ Point3d point_in_both(const LocalConvexPair& pair, const CoreGap& core) {
 
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     const LocalConvexPair pair(a, b);
+    if (ScaledPair::is_needed(pair)) {
+        const ScaledPair scaled(a, b, pair);
+        const ConvexContact contact = convex_contact(scaled.a(), scaled.b());
+        return {scaled.from_units(contact.point), contact.normal, scaled.from_units(contact.depth)};
+    }
     const CoreGap core = gjk_distance(pair);
     LeastOverlap least(pair);
     // A gap close to the rounding error has no reliable direction.
@@ -43,7 +49,7 @@ ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     } else {
         propose_axes(pair.a(), least);
         propose_axes(pair.b(), least);
-        find_least_overlap(least, pair.slack());
+        (void)find_least_overlap(least, pair.slack());
     }
     const Point3d& normal = least.normal();
     ConvexContact contact;
@@ -51,6 +57,18 @@ ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     contact.point = vector::plus(point_in_both(pair, core), pair.origin());
     contact.normal = pair.swapped() ? vector::times(normal, -1) : normal;
     return contact;
+}
+
+double convex_depth_at_least(const PosedConvex& a, const PosedConvex& b) {
+    const LocalConvexPair pair(a, b);
+    if (ScaledPair::is_needed(pair)) {
+        const ScaledPair scaled(a, b, pair);
+        return scaled.from_units(convex_depth_at_least(scaled.a(), scaled.b()));
+    }
+    LeastOverlap least(pair);
+    propose_axes(pair.a(), least);
+    propose_axes(pair.b(), least);
+    return std::max(0.0, find_least_overlap(least, pair.slack()) + pair.radii());
 }
 
 }  // namespace octopair

@@ -5,6 +5,7 @@
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
+#include "narrow_phase/convex/scaled_pair.hpp"
 
 namespace octopair {
 
@@ -12,12 +13,22 @@ bool convex_meet(const PosedConvex& a, const PosedConvex& b) { return convex_wit
 
 bool convex_within(const PosedConvex& a, const PosedConvex& b, double margin) {
     const LocalConvexPair pair(a, b);
+    if (ScaledPair::is_needed(pair)) {
+        const ScaledPair scaled(a, b, pair);
+        return convex_within(scaled.a(), scaled.b(), scaled.to_units(margin));
+    }
     const double enough = pair.radii() + margin;
     return gjk_distance(pair, enough).at_least <= enough;
 }
 
 ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b) {
     const LocalConvexPair pair(a, b);
+    if (ScaledPair::is_needed(pair)) {
+        const ScaledPair scaled(a, b, pair);
+        const ConvexGap gap = convex_gap(scaled.a(), scaled.b());
+        return {scaled.from_units(gap.distance), scaled.from_units(gap.at_least), scaled.from_units(gap.on_a),
+                scaled.from_units(gap.on_b)};
+    }
     const CoreGap core = gjk_distance(pair);
     ConvexGap gap;
     gap.at_least = std::max(0.0, core.at_least - pair.radii());

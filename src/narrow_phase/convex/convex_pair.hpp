@@ -57,8 +57,11 @@ ConvexGap convex_gap(const PosedConvex& a, const PosedConvex& b);
 /// Returns the contact of two objects that meet. If they do not meet, the depth is 0 and the point lies between them.
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b);
 
+/// Returns a proven lower bound on the depth of two objects; 0 if they may be apart.
+double convex_depth_at_least(const PosedConvex& a, const PosedConvex& b);
+
 /// Returns true if `inner` lies inside `outer` and does not reach its surface; convex_contains.cpp describes the method.
-/// Always false if `outer` is a triangle or a point. A cylinder or cone in a hull must be deeper than 1/800 of its radius.
+/// Always false if `outer` is a triangle or a point.
 bool convex_contains(const PosedConvex& outer, const PosedConvex& inner);
 
 }  // namespace octopair

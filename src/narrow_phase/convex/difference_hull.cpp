@@ -1,5 +1,6 @@
 #include "narrow_phase/convex/difference_hull.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -52,14 +53,17 @@ public:
         return true;
     }
 
+    /// Returns a lower bound on the overlap along every direction: the least height of a face.
+    double least_height() {
+        skip_removed();
+        const double waiting = nearest_.empty() ? std::numeric_limits<double>::infinity() : nearest_.top().first;
+        return faces_.empty() ? -waiting : std::min(waiting, least_tried_);
+    }
+
     /// Replaces the nearest face by farther ones. Returns true if the least overlap was found.
     bool grow() {
-        while (!nearest_.empty()) {
+        for (skip_removed(); !nearest_.empty(); skip_removed()) {
             const auto [height, face] = nearest_.top();
-            if (faces_[face].removed) {
-                nearest_.pop();
-                continue;
-            }
             const double tolerance = std::max(slack_, relative_tolerance * least_.overlap());
             if (height >= least_.overlap() - tolerance) return true;
             if (points_.size() >= max_points) return false;
@@ -67,6 +71,7 @@ public:
             const Point3d normal = faces_[face].normal;
             points_.push_back(least_.consider(normal));
             if (dot(points_.back(), normal) > height + slack_) add_last_point(face);
+            if (!faces_[face].removed) least_tried_ = std::min(least_tried_, height);
         }
         return false;
     }
@@ -84,6 +89,10 @@ private:
         std::uint32_t from, to;
         std::uint32_t face;  // beyond the edge; it stays
     };
+
+    void skip_removed() {
+        while (!nearest_.empty() && faces_[nearest_.top().second].removed) nearest_.pop();
+    }
 
     void try_both(const Point3d& direction) {
         const Point3d normal = times(direction, 1 / vector::length(direction));
@@ -202,16 +211,21 @@ private:
     double slack_;
     std::vector<Point3d> points_;
     std::vector<Face> faces_;
-    std::priority_queue<Nearest, std::vector<Nearest>, std::greater<>> nearest_;
+    std::priority_queue<Nearest, std::vector<Nearest>, std::greater<>> nearest_;  // faces that were not tried
+    double least_tried_ = std::numeric_limits<double>::infinity();  // height of the faces that were tried and stay
     std::vector<std::uint32_t> visible_;
     std::vector<Edge> outline_;
 };
 
 }  // namespace
 
-void find_least_overlap(LeastOverlap& least, double slack) {
+double find_least_overlap(LeastOverlap& least, double slack) {
     DifferenceHull hull(least, slack);
-    if (hull.begin() && !hull.grow()) least.descend();
+    if (!hull.begin()) return -std::numeric_limits<double>::infinity();
+    const bool found = hull.grow();
+    const double at_least = hull.least_height() - slack;
+    if (!found) least.descend();
+    return at_least;
 }
 
 }  // namespace octopair

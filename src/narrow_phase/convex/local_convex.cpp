@@ -108,7 +108,7 @@ LocalConvexPair::LocalConvexPair(const PosedConvex& a, const PosedConvex& b)
 double LocalConvexPair::slack() const {
     // A support errs by a few roundings of each coordinate; so do its product with a direction and the radii.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    return 32 * epsilon * (a_.magnitude() + b_.magnitude() + radii()) + std::numeric_limits<double>::min();
+    return 32 * epsilon * size() + std::numeric_limits<double>::min();
 }
 
 }  // namespace octopair

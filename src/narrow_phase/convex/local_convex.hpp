@@ -57,6 +57,8 @@ public:
     /// Upper bound on the rounding error of a difference of two supports.
     double slack() const;
     double radii() const { return a_.radius() + b_.radius(); }
+    /// Upper bound on the absolute value of all coordinates and radii.
+    double size() const { return a_.magnitude() + b_.magnitude() + radii(); }
 
 private:
     bool swapped_;

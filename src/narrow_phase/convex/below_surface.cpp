@@ -1,0 +1,206 @@
+// Ellipsoid The surface of each solid consists of planes, and of places where a quadratic function is 0. Its greatest value in the
+//           ellipsoid is known (ball_maximum.hpp). So the answer is proven, up to rounding.
+// Capsule   Between its ends it is a cylinder, beyond them a ball. The part of the ellipsoid beyond an end is divided into slabs until
+//           the greatest distance in each is proven. Without a proof after many slabs, the ellipsoid counts as not below.
+#include "narrow_phase/convex/below_surface.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "geometry/vector.hpp"
+#include "narrow_phase/convex/ball_maximum.hpp"
+
+namespace octopair {
+namespace {
+
+using Core = ConvexSolid::Core;
+
+double above_box(const Point3d& extents, const Point3d& at) {
+    double height = -std::numeric_limits<double>::infinity();
+    for (std::size_t axis = 0; axis < 3; ++axis) height = std::max(height, std::fabs(at[axis]) - extents[axis]);
+    return height;
+}
+
+double above_cylinder(const Point3d& extents, const Point3d& at) {
+    return std::max(std::hypot(at[0], at[1]) - extents[0], std::fabs(at[2]) - extents[2]);
+}
+
+/// The normal of a cone's wall: its parts across the axis and along it.
+struct WallNormal {
+    double across, along;
+};
+
+WallNormal wall_normal(const Point3d& extents) {
+    const double slant = std::hypot(extents[0], 2 * extents[2]);
+    return {2 * extents[2] / slant, extents[0] / slant};
+}
+
+double above_cone(const Point3d& extents, const Point3d& at) {
+    const WallNormal normal = wall_normal(extents);
+    const double wall = normal.across * std::hypot(at[0], at[1]) + normal.along * (at[2] - extents[2]);
+    return std::max(wall, -extents[2] - at[2]);
+}
+
+double above_ellipsoid(const Point3d& radii, const Point3d& at) {
+    const double least = std::min({radii[0], radii[1], radii[2]});
+    return (vector::length({at[0] / radii[0], at[1] / radii[1], at[2] / radii[2]}) - 1) * least;
+}
+
+/// Height above a capsule, or above a sphere, whose two end points are equal. The axis is z.
+double above_capsule(const ConvexSolid& solid, const Point3d& at) {
+    const double half = solid.points.back()[2];
+    return vector::length({at[0], at[1], at[2] - std::clamp(at[2], -half, half)}) - solid.radius;
+}
+
+/// Returns the sum of two functions, the second one multiplied by `by`.
+Quadratic sum(const Quadratic& a, const Quadratic& b, double by) {
+    return {a.square + by * b.square, a.linear + by * b.linear, a.constant + by * b.constant};
+}
+
+/// Returns true if the ellipsoid lies in the ball around the origin.
+bool is_within_ball(const Ellipsoid& ellipsoid, double radius) {
+    return greatest_on_ball(squared_length(ellipsoid.centre, ellipsoid.map)) < radius * radius;
+}
+
+bool is_within_wall(const Ellipsoid& ellipsoid, double radius) {
+    return is_within_ball(ellipsoid.scaled({1, 1, 0}), radius);
+}
+
+bool is_below_box(const Point3d& extents, const Ellipsoid& ellipsoid, double slack) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(ellipsoid.farthest(axis) < extents[std::size_t(axis)] - slack)) return false;
+    }
+    return true;
+}
+
+bool is_below_cylinder(const Point3d& extents, const Ellipsoid& ellipsoid, double slack) {
+    return extents[0] > slack && ellipsoid.farthest(2) < extents[2] - slack &&
+           is_within_wall(ellipsoid, extents[0] - slack);
+}
+
+/// The height of the wall is across * distance from the axis - room, where room is `slack` less than along * distance below the tip.
+bool is_below_cone(const Point3d& extents, const Ellipsoid& ellipsoid, double slack) {
+    const WallNormal normal = wall_normal(extents);
+    const double room = normal.along * (extents[2] - ellipsoid.centre[2]) - slack;
+    const Eigen::Vector3d change = -normal.along * ellipsoid.along(2);
+    if (!(ellipsoid.lowest(2) > slack - extents[2] && room > change.norm())) return false;
+    const Ellipsoid across = ellipsoid.scaled({normal.across, normal.across, 0});
+    return greatest_on_ball(sum(squared_length(across.centre, across.map), squared(room, change), -1)) < 0;
+}
+
+bool is_below_ellipsoid(const Point3d& radii, const Ellipsoid& ellipsoid, double slack) {
+    const double least = std::min({radii[0], radii[1], radii[2]});
+    return slack < least &&
+           is_within_ball(ellipsoid.scaled({1 / radii[0], 1 / radii[1], 1 / radii[2]}), 1 - slack / least);
+}
+
+/// Returns true if the part of the ellipsoid with `from` <= z <= `to` is proven to lie in the ball around the origin.
+bool slab_is_within_ball(const Ellipsoid& ellipsoid, double radius, double from, double to) {
+    const Quadratic distance = squared_length(ellipsoid.centre, ellipsoid.map);
+    // (z - middle)^2 - (half height)^2, which is at most 0 in the slab: its multiples, subtracted, lower the function only outside.
+    const double middle = (from + to) / 2, half = (to - from) / 2;
+    Quadratic outside = squared(ellipsoid.centre[2] - middle, ellipsoid.along(2));
+    outside.constant -= half * half;
+    const auto greatest = [&](double multiple) { return greatest_on_ball(sum(distance, outside, -multiple)); };
+    // The bound is a convex function of the multiple: golden section.
+    constexpr double golden = std::numbers::phi - 1;
+    double low = 0, high = 2 + 4 * radius / half;
+    double first = high - golden * high, second = golden * high;
+    double at_first = greatest(first), at_second = greatest(second);
+    for (int step = 0; step < 40; ++step) {
+        if (std::min(at_first, at_second) < radius * radius) return true;
+        if (at_first < at_second) {
+            high = second, second = first, at_second = at_first;
+            first = high - golden * (high - low), at_first = greatest(first);
+        } else {
+            low = first, first = second, at_first = at_second;
+            second = low + golden * (high - low), at_second = greatest(second);
+        }
+    }
+    return false;
+}
+
+/// Returns true if a point of the ellipsoid above z = `from` is found that is outside of the ball around the origin.
+bool sticks_out_of_ball(const Ellipsoid& ellipsoid, double radius, double from) {
+    Eigen::Vector3d direction = {0, 0, 1};
+    double farthest = 0;
+    for (int step = 0; step < 32; ++step) {
+        const Eigen::Vector3d y = ellipsoid.map.transpose() * direction;
+        if (!(y.norm() > 0)) return false;
+        const Eigen::Vector3d point = ellipsoid.centre + ellipsoid.map * y.normalized();
+        if (point[2] < from) return false;
+        if (point.norm() >= radius) return true;
+        if (!(point.norm() > farthest)) return false;
+        farthest = point.norm();
+        direction = point;
+    }
+    return false;
+}
+
+/// Returns true if the part of the ellipsoid above z = `from` is proven to lie in the ball around the origin.
+bool top_is_within_ball(const Ellipsoid& ellipsoid, double radius, double from) {
+    if (ellipsoid.highest(2) <= from) return true;
+    if (sticks_out_of_ball(ellipsoid, radius, from)) return false;
+    constexpr int most_slabs = 64;
+    std::vector<std::array<double, 2>> slabs = {{from, ellipsoid.highest(2)}};
+    for (int tried = 0; !slabs.empty(); ++tried) {
+        if (tried == most_slabs) return false;
+        const auto [low, high] = slabs.back();
+        slabs.pop_back();
+        if (slab_is_within_ball(ellipsoid, radius, low, high)) continue;
+        const double middle = (low + high) / 2;
+        if (!(middle > low && middle < high)) return false;
+        slabs.push_back({low, middle});
+        slabs.push_back({middle, high});
+    }
+    return true;
+}
+
+bool is_below_capsule(const ConvexSolid& solid, const Ellipsoid& ellipsoid, double slack) {
+    const double half = solid.points.back()[2], radius = solid.radius - slack;
+    if (!(radius > 0)) return false;
+    const double nearest = std::clamp(ellipsoid.centre[2], -half, half);
+    if (is_within_ball(ellipsoid.moved({0, 0, -nearest}), radius)) return true;
+    if (half == 0 || !is_within_wall(ellipsoid, radius)) return false;
+    return top_is_within_ball(ellipsoid.moved({0, 0, -half}), radius, 0) &&
+           top_is_within_ball(ellipsoid.scaled({1, 1, -1}).moved({0, 0, -half}), radius, 0);
+}
+
+}  // namespace
+
+double height_above(const ConvexSolid& solid, const Point3d& at) {
+    switch (solid.core) {
+        case Core::points:
+            return above_capsule(solid, at);
+        case Core::box:
+            return above_box(solid.extents, at);
+        case Core::cylinder:
+            return above_cylinder(solid.extents, at);
+        case Core::cone:
+            return above_cone(solid.extents, at);
+        case Core::ellipsoid:
+            break;
+    }
+    return above_ellipsoid(solid.extents, at);
+}
+
+bool is_below(const ConvexSolid& solid, const Ellipsoid& ellipsoid, double slack) {
+    switch (solid.core) {
+        case Core::points:
+            return is_below_capsule(solid, ellipsoid, slack);
+        case Core::box:
+            return is_below_box(solid.extents, ellipsoid, slack);
+        case Core::cylinder:
+            return is_below_cylinder(solid.extents, ellipsoid, slack);
+        case Core::cone:
+            return is_below_cone(solid.extents, ellipsoid, slack);
+        case Core::ellipsoid:
+            break;
+    }
+    return is_below_ellipsoid(solid.extents, ellipsoid, slack);
+}
+
+}  // namespace octopair

@@ -1,0 +1,56 @@
+#include "narrow_phase/convex/scaled_pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace octopair {
+
+namespace {
+
+Point3d scaled(const Point3d& point, int exponent) {
+    return {std::ldexp(point[0], exponent), std::ldexp(point[1], exponent), std::ldexp(point[2], exponent)};
+}
+
+ConvexSolid scaled(ConvexSolid solid, int exponent) {
+    solid.extents = scaled(solid.extents, exponent);
+    solid.largest = scaled(solid.largest, exponent);
+    solid.radius = std::ldexp(solid.radius, exponent);
+    for (Point3d& point : solid.points) point = scaled(point, exponent);
+    return solid;
+}
+
+Pose scaled(Pose pose, int exponent) {
+    for (auto& row : pose.rows) row[3] = std::ldexp(row[3], exponent);
+    return pose;
+}
+
+std::array<Point3d, 3> scaled(const std::array<Point3d, 3>& triangle, int exponent) {
+    return {scaled(triangle[0], exponent), scaled(triangle[1], exponent), scaled(triangle[2], exponent)};
+}
+
+int exponent_of(double size) { return std::ilogb(std::min(size, std::numeric_limits<double>::max())); }
+
+}  // namespace
+
+ScaledConvex::ScaledConvex(const PosedConvex& convex, int exponent) : convex_(point_) {
+    if (convex.point()) {
+        point_ = scaled(*convex.point(), -exponent);
+    } else if (convex.triangle()) {
+        triangle_ = scaled(*convex.triangle(), -exponent);
+        convex_ = PosedConvex(triangle_);
+    } else {
+        solid_ = scaled(*convex.solid(), -exponent);
+        pose_ = scaled(*convex.pose(), -exponent);
+        convex_ = PosedConvex(solid_, pose_);
+    }
+}
+
+ScaledPair::ScaledPair(const PosedConvex& a, const PosedConvex& b, const LocalConvexPair& pair)
+    : exponent_(exponent_of(pair.size())), a_(a, exponent_), b_(b, exponent_) {}
+
+double ScaledPair::to_units(double length) const { return std::ldexp(length, -exponent_); }
+double ScaledPair::from_units(double length) const { return std::ldexp(length, exponent_); }
+Point3d ScaledPair::from_units(const Point3d& point) const { return scaled(point, exponent_); }
+
+}  // namespace octopair
