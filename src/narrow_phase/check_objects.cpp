@@ -1,4 +1,5 @@
 // check(): validates ShapedObjects. Errors name the object.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -54,6 +55,19 @@ void check_pose(const Pose& pose, const Geometry& geometry, const std::string& w
     }
 }
 
+/// Checks that sums and differences of a few coordinates of convex shapes are finite. Meshes are judged otherwise.
+void check_reach(const Pose& pose, const Geometry& geometry, const std::string& whose) {
+    constexpr double most = 0x1p1020;
+    const detail::PreparedShape& shape = detail::prepared(geometry);
+    if (!shape.convex.exists()) return;
+    const Box3d& box = shape.bounds.box;
+    for (const auto& row : pose.rows) {
+        double reach = std::fabs(row[3]);
+        for (std::size_t k = 0; k < 3; ++k) reach += std::fabs(row[k]) * std::max(std::fabs(box.min[k]), std::fabs(box.max[k]));
+        if (!(reach <= most)) refuse_objects(whose + " brings it beyond 1.1e307, where sums of coordinates are beyond float64");
+    }
+}
+
 void check_object(const ShapedObjects& objects, std::size_t i) {
     const std::string number = std::to_string(i);
     if (objects.geometry[i] >= objects.geometries.size()) {
@@ -62,8 +76,10 @@ void check_object(const ShapedObjects& objects, std::size_t i) {
     }
     const Geometry& geometry = objects.geometries[objects.geometry[i]];
     check_pose(objects.poses[i], geometry, "the pose of object " + number);
+    check_reach(objects.poses[i], geometry, "the pose of object " + number);
     if (!objects.end_poses.empty()) {
         check_pose(objects.end_poses[i], geometry, "the end pose of object " + number);
+        check_reach(objects.end_poses[i], geometry, "the end pose of object " + number);
         const auto motion = Motion::between(objects.poses[i], objects.end_poses[i]);
         if (!motion)
             refuse_objects("object " + number + ": no rotation and translation leads from its pose to its end pose");

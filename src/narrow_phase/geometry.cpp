@@ -21,6 +21,10 @@ void check_length(double value, const std::string& what) {
     if (!(value > 0) || !std::isfinite(value)) {
         refuse_geometry(what + " is " + std::to_string(value) + "; it must be finite and above 0");
     }
+    // Smaller numbers have fewer digits, so a pair of such objects cannot be judged.
+    if (value < std::numeric_limits<double>::min()) {
+        refuse_geometry(what + " is below 2.3e-308, the least number of float64 that has all digits");
+    }
 }
 
 void check_point(const Point3d& point, const std::string& what) {

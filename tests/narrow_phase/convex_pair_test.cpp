@@ -311,6 +311,33 @@ TEST(ConvexPair, HullsThatTouchOrPenetrateByConstruction) {
     }
 }
 
+/// Returns a hull of random points, and a random point inside of it.
+std::pair<shape::ConvexHull, Point3d> hull_and_point(std::uint64_t count, double size, RandomStream& random) {
+    shape::ConvexHull hull;
+    Point3d sum = {};
+    double weights = 0;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const Point3d way = random_point(random);
+        hull.points.push_back(times(way, size / length(way)));
+        const double weight = random.uniform(0, 1);
+        sum = plus(sum, times(hull.points.back(), weight));
+        weights += weight;
+    }
+    return {hull, times(sum, 1 / weights)};
+}
+
+TEST(ConvexPair, ContactsOfTinyThingsAreInBoth) {
+    RandomStream random(13, 0);
+    for (int i = 0; i < 3000; ++i) {
+        const double size = std::pow(10, -random.uniform(0, 6));
+        const auto [small, in_small] = hull_and_point(4 + random.below(17), size, random);
+        const auto [large, in_large] = hull_and_point(3 + random.below(6), 0.5, random);
+        const Thing a(small, minus(in_large, in_small)), b(large);
+        const Point3d point = contact(a, b).point;
+        ASSERT_LT(std::max(a.off(point), b.off(point)), 1e-9 * size) << i << ", " << size;
+    }
+}
+
 TEST(ConvexPair, ContactsAreInThinThingsToo) {
     const Thing ball(shape::Sphere{1}), plate(shape::Box{{0.01, 1, 1}}, Point3d{0.2, 0, 0}),
         bead(shape::Sphere{0.1}, Point3d{0.05, 0, 0});

@@ -203,6 +203,7 @@ TEST(ShapeBoxes, PlanesAgainstSolids) {
 TEST(ShapeBoxes, BadShapesAndObjectsAreNamed) {
     EXPECT_NE(refusal(shape::Sphere{0}).find("radius"), std::string::npos);
     EXPECT_NE(refusal(shape::Box{{1, NAN, 1}}).find("along y"), std::string::npos);
+    EXPECT_NE(refusal(shape::Ellipsoid{{1, 1, 1e-310}}).find("along z is below 2.3e-308"), std::string::npos);
     EXPECT_NE(refusal(shape::Capsule{1, -1}).find("length"), std::string::npos);
     EXPECT_NE(refusal(shape::Plane{{0, 0, 0}, 1}).find("normal"), std::string::npos);
     EXPECT_NE(refusal(shape::ConvexHull{}).find("no points"), std::string::npos);
@@ -216,6 +217,9 @@ TEST(ShapeBoxes, BadShapesAndObjectsAreNamed) {
     EXPECT_NE(refusal(made).find("object 0"), std::string::npos);
     made.poses[0].rows[0][0] = NAN;
     EXPECT_NE(refusal(made).find("not finite"), std::string::npos);
+    made.poses[0] = Pose{};
+    made.poses[0].rows[1][3] = -1e308;
+    EXPECT_NE(refusal(made).find("object 0 brings it beyond 1.1e307"), std::string::npos);
     made.poses[0] = Pose{};
     made.geometry[0] = 7;
     EXPECT_NE(refusal(made).find("geometry 7 of 1"), std::string::npos);

@@ -27,6 +27,9 @@ using Weights = std::array<double, 4>;
 /// Up to four vertices of the Minkowski difference, and the nearest point to the origin found in them.
 class Simplex {
 public:
+    /// `slack`: rounding error of a vertex.
+    explicit Simplex(double slack) : slack_(slack) {}
+
     void add(const Vertex& vertex) { vertices_[count_++] = vertex; }
     bool has(const Vertex& vertex) const {
         return std::any_of(vertices_.begin(), vertices_.begin() + std::ptrdiff_t(count_),
@@ -115,17 +118,23 @@ private:
     }
     void try_inside() {
         const Point3d x = vector::minus(at(1), at(0)), y = vector::minus(at(2), at(0)), z = vector::minus(at(3), at(0));
-        const Point3d from = vector::times(at(0), -1);
         const double whole = vector::dot(x, vector::cross(y, z));
-        const double of_x = vector::dot(from, vector::cross(y, z)) / whole;
-        const double of_y = vector::dot(x, vector::cross(from, z)) / whole;
-        const double of_z = vector::dot(x, vector::cross(y, from)) / whole;
-        if (!(of_x > 0 && of_y > 0 && of_z > 0 && of_x + of_y + of_z < 1)) return;
-        const Weights inside = {1 - of_x - of_y - of_z, of_x, of_y, of_z};
-        const Point3d zero = mix(inside, &Vertex::apart);
-        // Weights of a flat simplex may be meaningless: accept them only if they do give the origin.
-        constexpr double close = 1e-12;
-        if (vector::length(zero) <= close * vector::length(x)) offer(inside);
+        Weights inside = {1, 0, 0, 0};
+        // In a flat simplex the rounding of the first weights is large: the second ones correct it.
+        for (int step = 0; step < 3; ++step) {
+            const Point3d rest = vector::times(mix_edges(inside, x, y, z), -1);
+            inside[1] += vector::dot(rest, vector::cross(y, z)) / whole;
+            inside[2] += vector::dot(x, vector::cross(rest, z)) / whole;
+            inside[3] += vector::dot(x, vector::cross(y, rest)) / whole;
+            inside[0] = 1 - inside[1] - inside[2] - inside[3];
+            if (!(inside[0] > 0 && inside[1] > 0 && inside[2] > 0 && inside[3] > 0)) return;
+        }
+        // They may still be meaningless: accept them only if they do give the origin.
+        if (vector::length(mix(inside, &Vertex::apart)) <= slack_) offer(inside);
+    }
+    Point3d mix_edges(const Weights& weights, const Point3d& x, const Point3d& y, const Point3d& z) const {
+        const Point3d along_x = vector::plus(at(0), vector::times(x, weights[1]));
+        return vector::plus(vector::plus(along_x, vector::times(y, weights[2])), vector::times(z, weights[3]));
     }
     void keep_needed() {
         std::size_t kept = 0;
@@ -138,6 +147,7 @@ private:
         for (std::size_t i = kept; i < kept_.size(); ++i) kept_[i] = 0;
     }
 
+    double slack_;
     std::array<Vertex, 4> vertices_ = {};
     std::size_t count_ = 0;
     double best_ = 0;
@@ -200,7 +210,7 @@ CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough) 
     const double slack = pair.slack();
     double at_least = 0;
     bool decided = false;
-    Simplex simplex;
+    Simplex simplex(slack);
     simplex.add(support(pair, vector::minus(pair.b().middle(), pair.a().middle())));
     simplex.reduce();
     for (int step = 0; step < max_steps; ++step) {
