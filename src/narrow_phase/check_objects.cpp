@@ -63,8 +63,10 @@ void check_reach(const Pose& pose, const Geometry& geometry, const std::string& 
     const Box3d& box = shape.bounds.box;
     for (const auto& row : pose.rows) {
         double reach = std::fabs(row[3]);
-        for (std::size_t k = 0; k < 3; ++k) reach += std::fabs(row[k]) * std::max(std::fabs(box.min[k]), std::fabs(box.max[k]));
-        if (!(reach <= most)) refuse_objects(whose + " brings it beyond 1.1e307, where sums of coordinates are beyond float64");
+        for (std::size_t k = 0; k < 3; ++k)
+            reach += std::fabs(row[k]) * std::max(std::fabs(box.min[k]), std::fabs(box.max[k]));
+        if (!(reach <= most))
+            refuse_objects(whose + " brings it beyond 1.1e307, where sums of coordinates are beyond float64");
     }
 }
 

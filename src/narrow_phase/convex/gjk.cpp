@@ -120,21 +120,19 @@ private:
         const Point3d x = vector::minus(at(1), at(0)), y = vector::minus(at(2), at(0)), z = vector::minus(at(3), at(0));
         const double whole = vector::dot(x, vector::cross(y, z));
         Weights inside = {1, 0, 0, 0};
-        // In a flat simplex the rounding of the first weights is large: the second ones correct it.
+        Point3d rest = vector::times(at(0), -1);
+        // In a flat simplex the rounding of the first weights is large: the next ones correct it. They may still be meaningless, so
+        // they are accepted only if they do give the origin.
         for (int step = 0; step < 3; ++step) {
-            const Point3d rest = vector::times(mix_edges(inside, x, y, z), -1);
-            inside[1] += vector::dot(rest, vector::cross(y, z)) / whole;
-            inside[2] += vector::dot(x, vector::cross(rest, z)) / whole;
-            inside[3] += vector::dot(x, vector::cross(y, rest)) / whole;
-            inside[0] = 1 - inside[1] - inside[2] - inside[3];
-            if (!(inside[0] > 0 && inside[1] > 0 && inside[2] > 0 && inside[3] > 0)) return;
+            const double of_x = inside[1] + vector::dot(rest, vector::cross(y, z)) / whole;
+            const double of_y = inside[2] + vector::dot(x, vector::cross(rest, z)) / whole;
+            const double of_z = inside[3] + vector::dot(x, vector::cross(y, rest)) / whole;
+            if (!(of_x > 0 && of_y > 0 && of_z > 0 && of_x + of_y + of_z < 1)) return;
+            inside = {1 - of_x - of_y - of_z, of_x, of_y, of_z};
+            const Point3d zero = mix(inside, &Vertex::apart);
+            if (vector::length(zero) <= slack_) return offer(inside);
+            rest = vector::times(zero, -1);
         }
-        // They may still be meaningless: accept them only if they do give the origin.
-        if (vector::length(mix(inside, &Vertex::apart)) <= slack_) offer(inside);
-    }
-    Point3d mix_edges(const Weights& weights, const Point3d& x, const Point3d& y, const Point3d& z) const {
-        const Point3d along_x = vector::plus(at(0), vector::times(x, weights[1]));
-        return vector::plus(vector::plus(along_x, vector::times(y, weights[2])), vector::times(z, weights[3]));
     }
     void keep_needed() {
         std::size_t kept = 0;

@@ -103,12 +103,13 @@ LocalConvexPair::LocalConvexPair(const PosedConvex& a, const PosedConvex& b)
     : swapped_(!solid_comes_first(a, b)),
       origin_(place_of(swapped_ ? a : b)),
       a_(swapped_ ? b : a, origin_),
-      b_(swapped_ ? a : b, origin_) {}
+      b_(swapped_ ? a : b, origin_),
+      size_(a_.magnitude() + b_.magnitude() + radii()) {}
 
 double LocalConvexPair::slack() const {
     // A support errs by a few roundings of each coordinate; so do its product with a direction and the radii.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    return 32 * epsilon * size() + std::numeric_limits<double>::min();
+    return 32 * epsilon * size_ + std::numeric_limits<double>::min();
 }
 
 }  // namespace octopair

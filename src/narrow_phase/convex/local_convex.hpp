@@ -58,12 +58,13 @@ public:
     double slack() const;
     double radii() const { return a_.radius() + b_.radius(); }
     /// Upper bound on the absolute value of all coordinates and radii.
-    double size() const { return a_.magnitude() + b_.magnitude() + radii(); }
+    double size() const { return size_; }
 
 private:
     bool swapped_;
     Point3d origin_;
     LocalConvex a_, b_;
+    double size_;
 };
 
 /// Bounds on the distance of two cores, and two points that are `at_most` apart.

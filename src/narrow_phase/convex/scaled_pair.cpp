@@ -1,6 +1,7 @@
 #include "narrow_phase/convex/scaled_pair.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -33,21 +34,38 @@ int exponent_of(double size) { return std::ilogb(std::min(size, std::numeric_lim
 
 }  // namespace
 
-ScaledConvex::ScaledConvex(const PosedConvex& convex, int exponent) : convex_(point_) {
-    if (convex.point()) {
-        point_ = scaled(*convex.point(), -exponent);
-    } else if (convex.triangle()) {
-        triangle_ = scaled(*convex.triangle(), -exponent);
-        convex_ = PosedConvex(triangle_);
-    } else {
-        solid_ = scaled(*convex.solid(), -exponent);
-        pose_ = scaled(*convex.pose(), -exponent);
-        convex_ = PosedConvex(solid_, pose_);
+/// A convex object that owns its numbers.
+struct ScaledPair::Scaled {
+    ConvexSolid solid;
+    Pose pose;
+    std::array<Point3d, 3> triangle = {};
+    Point3d point = {};
+    PosedConvex convex;  // borrows one of the others
+
+    Scaled(const PosedConvex& whole, int exponent) : convex(point) {
+        if (whole.point()) {
+            point = scaled(*whole.point(), -exponent);
+        } else if (whole.triangle()) {
+            triangle = scaled(*whole.triangle(), -exponent);
+            convex = PosedConvex(triangle);
+        } else {
+            solid = scaled(*whole.solid(), -exponent);
+            pose = scaled(*whole.pose(), -exponent);
+            convex = PosedConvex(solid, pose);
+        }
     }
-}
+    Scaled(const Scaled&) = delete;
+    Scaled& operator=(const Scaled&) = delete;
+};
 
 ScaledPair::ScaledPair(const PosedConvex& a, const PosedConvex& b, const LocalConvexPair& pair)
-    : exponent_(exponent_of(pair.size())), a_(a, exponent_), b_(b, exponent_) {}
+    : exponent_(exponent_of(pair.size())),
+      a_(std::make_unique<const Scaled>(a, exponent_)),
+      b_(std::make_unique<const Scaled>(b, exponent_)) {}
+ScaledPair::~ScaledPair() = default;
+
+const PosedConvex& ScaledPair::a() const { return a_->convex; }
+const PosedConvex& ScaledPair::b() const { return b_->convex; }
 
 double ScaledPair::to_units(double length) const { return std::ldexp(length, -exponent_); }
 double ScaledPair::from_units(double length) const { return std::ldexp(length, exponent_); }

@@ -4,29 +4,12 @@
 // power of two, so scaling rounds nothing (but the parts of an object that are 2^800 times smaller than the pair).
 #pragma once
 
-#include <array>
+#include <memory>
 
 #include "narrow_phase/convex/convex_pair.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
 
 namespace octopair {
-
-/// A convex object that owns its numbers, in units of 2^exponent. Cannot be copied or moved.
-class ScaledConvex {
-public:
-    ScaledConvex(const PosedConvex& convex, int exponent);
-    ScaledConvex(const ScaledConvex&) = delete;
-    ScaledConvex& operator=(const ScaledConvex&) = delete;
-
-    const PosedConvex& convex() const { return convex_; }
-
-private:
-    ConvexSolid solid_;
-    Pose pose_;
-    std::array<Point3d, 3> triangle_ = {};
-    Point3d point_ = {};
-    PosedConvex convex_;  // borrows one of the others
-};
 
 class ScaledPair {
 public:
@@ -36,18 +19,24 @@ public:
         return size > 0 && !(size >= 0x1p-200 && size <= 0x1p200);
     }
 
-    /// Borrows nothing.
+    /// Copies the numbers of both objects.
     ScaledPair(const PosedConvex& a, const PosedConvex& b, const LocalConvexPair& pair);
+    ~ScaledPair();
+    ScaledPair(const ScaledPair&) = delete;
+    ScaledPair& operator=(const ScaledPair&) = delete;
 
-    const PosedConvex& a() const { return a_.convex(); }
-    const PosedConvex& b() const { return b_.convex(); }
+    const PosedConvex& a() const;
+    const PosedConvex& b() const;
     double to_units(double length) const;
     double from_units(double length) const;
     Point3d from_units(const Point3d& point) const;
 
 private:
+    struct Scaled;
+
     int exponent_;
-    ScaledConvex a_, b_;
+    std::unique_ptr<const Scaled> a_,
+        b_;  // not on the stack: a frame of this size costs the usual pairs 5% of their time
 };
 
 }  // namespace octopair
