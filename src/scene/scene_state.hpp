@@ -1,8 +1,8 @@
 // Scene::State: the implementation of Scene. Its parts:
 //
 //   objects    current objects, and the previous states of objects that changed since the last step
-//   octree     mutable octree, valid if one of two flags is set. `octree_matches_last_step_`: it holds the objects as they
-//              were at the last step. `octree_matches_now_`: it holds the current objects
+//   states     which state of the objects both octrees and the pairs describe: that of now, of the last step, or another
+//   octree     mutable octree, for incremental steps and queries
 //   search     incremental step: brings `octree` up to date and finds the pairs that began and ended
 //   linear     linear octree of a full step. The first step with few changes after it builds `octree` from it
 //   history    pairs of the last step; with slack, those of the searched boxes
@@ -29,6 +29,7 @@
 #include "scene/recording/recorder.hpp"
 #include "scene/scene_objects.hpp"
 #include "scene/scene_source.hpp"
+#include "scene/searched_states.hpp"
 
 namespace octopair {
 
@@ -37,9 +38,9 @@ public:
     /// Throws: Error{bad_input} if options are invalid; Error{io_failed} if the recording cannot be created.
     explicit State(const SceneOptions& options);
 
-    /// Returns the objects for a call that changes them. Octrees of the current objects become outdated.
+    /// Returns the objects for a call that changes them.
     SceneObjects& objects_to_change() {
-        octree_matches_now_ = linear_matches_now_ = false;
+        states_.change();
         return objects_;
     }
     const SceneObjects& objects() const { return objects_; }
@@ -58,14 +59,13 @@ private:
     /// Returns the history of the pairs that the scene shows.
     PairHistory& shown() { return exact_ ? exact_->history() : history_; }
     bool search(const std::stop_token& stop);
-    void find_exact();
+    void update_searched();
     bool find_nothing(const std::stop_token& stop);
     bool expects_few_changes() const;
     void find_all(const std::stop_token& stop);
     void build(const SceneSource& source, const std::stop_token& stop);
     void build_octree_of_last_step(const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
-    void drop_octrees();
 
     double margin_;
     SceneObjects objects_;
@@ -80,11 +80,7 @@ private:
     unsigned refills_ = tuning().scene.max_refills;
     unsigned steps_with_few_ = 0;  // number of consecutive searches in which few searched boxes had changed
     EntryRounding rounding_;
-    bool has_stepped_ = false;               // a step has succeeded
-    bool octree_matches_last_step_ = false;  // octree_ holds the objects as they were at the last step
-    bool octree_matches_now_ = false;        // octree_ holds the current objects
-    bool linear_matches_last_step_ = false;  // linear_ holds the objects as they were at the last step
-    bool linear_matches_now_ = false;        // linear_ holds the current objects
+    SearchedStates states_;        // of linear_, octree_ and history_
     bool queried_ = false;         // a query has built octree_ since the last full step, so its memory is kept
     double full_seconds_ = 0;      // time of the last full step
     double seconds_a_change_ = 0;  // estimated time of an incremental step for each changed object

@@ -63,22 +63,31 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
     const std::uint64_t before = shown().size();
     bool full = false;
     try {
-        objects_.update_searched();
+        update_searched();
         const bool idle = find_nothing(stop);
         if (!idle) full = search(stop);
-        if (exact_ && (!idle || objects_.changed())) find_exact();
+        if (exact_ && (!idle || objects_.changed())) exact_->update(history_.list(), objects_.table(), margin_, found_);
     } catch (const std::bad_alloc&) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     } catch (const Error& error) {
-        if (error.code() == ErrorCode::engine_failed) drop_octrees();
+        if (error.code() == ErrorCode::engine_failed) {
+            // A search had wrong results. The next step builds all from the objects.
+            states_.forget(SearchedStates::octree), states_.forget(SearchedStates::linear);
+            refills_ = tuning().scene.max_refills;
+        }
         throw;
     }
-    has_stepped_ = true;
+    states_.end_step();
     std::swap(changes_, found_);
-    if (objects_.finish_step()) octree_matches_now_ = linear_matches_now_ = false;
+    if (objects_.finish_step()) states_.change();
     result_ = {changes_.began, changes_.ended, before - changes_.ended.size(), full, seconds_since(begin)};
     if (recorder_) recorder_->end_step(result_);
     return result_;
+}
+
+void Scene::State::update_searched() {
+    objects_.update_searched();
+    if (states_.has_stepped() && !objects_.must_search()) states_.set_unchanged();
 }
 
 /// Brings the pairs of the searched boxes up to date. Returns whether it searched all objects.
@@ -91,25 +100,17 @@ bool Scene::State::search(const std::stop_token& stop) {
     const bool full = !(few && find_changes(stop));
     if (full) {
         objects_.enlarge_all();
+        states_.change();
         find_all(stop);
     }
     count_path(full ? Path::step_full : Path::step_incremental);
     return full;
 }
 
-/// Finds the pairs of the objects' own boxes among those of the searched boxes.
-void Scene::State::find_exact() {
-    try {
-        exact_->update(history_.list(), objects_.table(), margin_, found_);
-    } catch (...) {
-        drop_octrees();  // the pairs of the searched boxes belong to this step already, so a repeated step searches all objects
-        throw;
-    }
-}
-
 /// Runs a step in which no searched box has changed. Returns false if one has, or if no step has succeeded yet.
 bool Scene::State::find_nothing(const std::stop_token& stop) {
-    const bool idle = has_stepped_ && !objects_.must_search() && !history_.is_inconsistent();
+    const bool idle =
+        states_.is_last_step(SearchedStates::pairs) && !objects_.must_search() && !history_.is_inconsistent();
     if (!idle || !chooses_incremental(true)) return false;
     throw_if_stopped(stop);
     found_.clear();
@@ -119,29 +120,24 @@ bool Scene::State::find_nothing(const std::stop_token& stop) {
 
 /// Returns whether an incremental step is possible, and expected to be cheaper than a full one.
 bool Scene::State::expects_few_changes() const {
-    if (!octree_matches_last_step_ && !linear_matches_last_step_) return false;
+    // Pairs are newer than the last step if the step after them failed later.
+    const bool has_octree = states_.is_last_step(SearchedStates::octree);
+    if (!states_.is_last_step(SearchedStates::pairs) || !(has_octree || states_.is_last_step(SearchedStates::linear)))
+        return false;
     const double expected = double(objects_.log().previous_states().size()) * seconds_a_change_;
-    double most = octree_matches_last_step_ ? max_search_cost : max_rebuild_cost;
+    double most = has_octree ? max_search_cost : max_rebuild_cost;
     if (exact_) most = std::min(most, max_cost_with_slack);
-    const bool often = !exact_ || octree_matches_last_step_ || steps_with_few_ >= min_steps_with_few;
+    const bool often = !exact_ || has_octree || steps_with_few_ >= min_steps_with_few;
     const bool cheap = chooses_incremental(expected <= most * full_seconds_ && often);
     // Exact entries were not widened by paddings.
     const bool unlike = rounding_.exact && objects_.table().any_padding();
     return cheap && !unlike && !objects_.log().overflowed() && !history_.is_inconsistent();
 }
 
-/// Discards both octrees after a search with wrong results. The next step builds all from the objects.
-void Scene::State::drop_octrees() {
-    octree_matches_last_step_ = octree_matches_now_ = false;
-    linear_matches_last_step_ = linear_matches_now_ = false;
-    refills_ = tuning().scene.max_refills;
-}
-
 void Scene::State::find_all(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
     if (!queried_) octree_.release();
     queried_ = false;
-    octree_matches_last_step_ = octree_matches_now_ = false;
     const SceneSource source(objects_.table(), margin_);
     build(source, stop);
     detail::PairStorage& fresh = detail::storage_of(history_.fresh());
@@ -155,7 +151,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     // The measured estimate decays, so that an incremental step is tried again later.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
     history_.take_over(found_);  // last, so that a failure before has changed nothing
-    linear_matches_last_step_ = true;
+    states_.hold_now(SearchedStates::pairs);
 }
 
 void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
@@ -165,35 +161,37 @@ void Scene::State::build(const SceneSource& source, const std::stop_token& stop)
     const bool refill = refills_ < tuning().scene.max_refills && rounding.exact && rounding_.exact;
     const unsigned refills = refill ? refills_ + 1 : 0;
     refills_ = tuning().scene.max_refills;
-    linear_matches_now_ = linear_matches_last_step_ = false;
+    states_.forget(SearchedStates::linear);
+    states_.forget(SearchedStates::octree);  // its entries have the rounding of the build before
     refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
     refills_ = refills;
     rounding_ = rounding;
-    linear_matches_now_ = true;
+    states_.hold_now(SearchedStates::linear);
 }
 
 SceneQueries::View Scene::State::view(std::uint32_t groups) {
-    objects_.update_searched();
-    const bool follows = octree_matches_last_step_ && !objects_.log().overflowed() && !history_.is_inconsistent();
-    if (!follows && !octree_matches_now_) {
+    update_searched();
+    const bool follows =
+        states_.is_last_step(SearchedStates::octree) && !objects_.log().overflowed() && !history_.is_inconsistent();
+    if (!follows && !states_.is_now(SearchedStates::octree)) {
         count_path(Path::octree_for_queries);
-        octree_matches_last_step_ = false;
-        if (!linear_matches_now_) build(SceneSource(objects_.table(), margin_), {});
+        states_.forget(SearchedStates::octree);
+        if (!states_.is_now(SearchedStates::linear)) build(SceneSource(objects_.table(), margin_), {});
         // The origin of rounding depends on indices that are no longer in use, so it is that of the build.
         const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
         TeamExecutor executor(team_);
         octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});
-        octree_matches_now_ = queried_ = true;
-        octree_matches_last_step_ = has_stepped_ && !objects_.must_search();
+        states_.hold_now(SearchedStates::octree);
+        queried_ = true;
     }
     return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};
 }
 
 /// Builds the octree of incremental steps from the linear octree of the last step.
-/// Requires: linear_matches_last_step_.
+/// Requires: linear_ holds the objects as they were at the last step.
 void Scene::State::build_octree_of_last_step(const std::stop_token& stop) {
     count_path(Path::octree_rebuilt);
-    octree_matches_now_ = false;
+    states_.forget(SearchedStates::octree);
     const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
     const auto load_bounds = [&](std::span<Entry> entries) {
         source.load_bounds(entries);
@@ -206,21 +204,22 @@ void Scene::State::build_octree_of_last_step(const std::stop_token& stop) {
     };
     TeamExecutor executor(team_);
     octree_.build(linear_, load_bounds, executor, stop);
+    states_.hold_last_step(SearchedStates::octree);
     linear_ = {};
-    linear_matches_now_ = linear_matches_last_step_ = false;
+    states_.forget(SearchedStates::linear);
     refills_ = tuning().scene.max_refills;
 }
 
 /// Runs an incremental step. Returns false if it was aborted because it took too long.
 bool Scene::State::find_changes(const std::stop_token& stop) {
-    if (!octree_matches_last_step_) build_octree_of_last_step(stop);
+    if (!states_.is_last_step(SearchedStates::octree)) build_octree_of_last_step(stop);
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t changed = objects_.log().previous_states().size();
     const auto time_limit = std::chrono::duration<double>(abort_cost * full_seconds_ + abort_seconds);
     const ChangeSearch::Limits limits{
         begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(time_limit),
         objects_.table().size() / 2 + tuning().scene.visits, history_.size() + tuning().scene.changed_pairs, stop};
-    octree_matches_last_step_ = false;  // until everything below has succeeded
+    states_.forget(SearchedStates::octree);  // until everything below has succeeded
     try {
         search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
     } catch (const ChangeSearch::LimitReached&) {
@@ -229,8 +228,8 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
         return false;
     }
     history_.apply(found_);
-    octree_matches_last_step_ = true;
-    linear_matches_last_step_ = false;  // it still has the objects of the step before
+    states_.hold_now(SearchedStates::pairs);
+    states_.hold_now(SearchedStates::octree);
     constexpr std::size_t enough = 64;  // minimum number of changes for a measurement of the cost of one
     if (changed >= enough) seconds_a_change_ += (seconds_since(begin) / double(changed) - seconds_a_change_) / 4;
     return true;
