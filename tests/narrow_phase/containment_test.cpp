@@ -26,7 +26,7 @@ namespace {
 
 using samples::RandomStream;
 
-enum class Kind { sphere, box, capsule, cylinder, cone, ellipsoid, box_hull, octahedron };
+enum class Nestable { sphere, box, capsule, cylinder, cone, ellipsoid, box_hull, octahedron };
 constexpr int kind_count = 8;
 
 shape::ConvexHull hull_of_box(const Point3d& half) {
@@ -51,26 +51,26 @@ shape::ConvexHull octahedron(const Point3d& half) {
 
 /// A shape of a kind with three lengths. A sphere uses the first one; a capsule, a cylinder and a cone use the first and the third.
 struct Model {
-    Kind kind;
+    Nestable kind;
     Point3d size;
 
     shape::Any shape() const {
         switch (kind) {
-            case Kind::sphere:
+            case Nestable::sphere:
                 return shape::Sphere{size[0]};
-            case Kind::box:
+            case Nestable::box:
                 return shape::Box{size};
-            case Kind::capsule:
+            case Nestable::capsule:
                 return shape::Capsule{size[0], 2 * size[2]};
-            case Kind::cylinder:
+            case Nestable::cylinder:
                 return shape::Cylinder{size[0], 2 * size[2]};
-            case Kind::cone:
+            case Nestable::cone:
                 return shape::Cone{size[0], 2 * size[2]};
-            case Kind::ellipsoid:
+            case Nestable::ellipsoid:
                 return shape::Ellipsoid{size};
-            case Kind::box_hull:
+            case Nestable::box_hull:
                 return hull_of_box(size);
-            case Kind::octahedron:
+            case Nestable::octahedron:
                 break;
         }
         return octahedron(size);
@@ -83,21 +83,21 @@ struct Model {
         const double across = std::hypot(at[0], at[1]), along = std::fabs(at[2]);
         const auto part = [&](std::size_t axis) { return std::fabs(at[axis]) / size[axis]; };
         switch (kind) {
-            case Kind::sphere:
+            case Nestable::sphere:
                 return vector::length(at) / size[0];
-            case Kind::box:
-            case Kind::box_hull:
+            case Nestable::box:
+            case Nestable::box_hull:
                 return std::max({part(0), part(1), part(2)});
-            case Kind::cylinder:
+            case Nestable::cylinder:
                 return std::max(across / size[0], part(2));
-            case Kind::cone:
+            case Nestable::cone:
                 // The wall is at radius (1 - z / half) radius / 2.
                 return std::max(2 * across / size[0] + at[2] / size[2], -at[2] / size[2]);
-            case Kind::ellipsoid:
+            case Nestable::ellipsoid:
                 return std::hypot(part(0), part(1), part(2));
-            case Kind::octahedron:
+            case Nestable::octahedron:
                 return part(0) + part(1) + part(2);
-            case Kind::capsule:
+            case Nestable::capsule:
                 break;
         }
         const double radius = size[0], half = size[2];
@@ -115,21 +115,21 @@ struct Model {
         const Point3d way = {r * std::cos(turn), r * std::sin(turn), z};
         const auto sign = [](double number) { return number < 0 ? -1.0 : 1.0; };
         switch (kind) {
-            case Kind::sphere:
+            case Nestable::sphere:
                 return vector::times(way, size[0]);
-            case Kind::ellipsoid:
+            case Nestable::ellipsoid:
                 return {size[0] * way[0], size[1] * way[1], size[2] * way[2]};
-            case Kind::box:
-            case Kind::box_hull:
+            case Nestable::box:
+            case Nestable::box_hull:
                 return {size[0] * sign(way[0]), size[1] * sign(way[1]), size[2] * sign(z)};
-            case Kind::capsule:
+            case Nestable::capsule:
                 return vector::plus(vector::times(way, size[0]), {0, 0, size[2] * sign(z)});
-            case Kind::cylinder:
+            case Nestable::cylinder:
                 return {size[0] * std::cos(turn), size[0] * std::sin(turn), size[2] * sign(z)};
-            case Kind::cone:
+            case Nestable::cone:
                 if (z > 0.9) return {0, 0, size[2]};
                 return {size[0] * std::cos(turn), size[0] * std::sin(turn), -size[2]};
-            case Kind::octahedron:
+            case Nestable::octahedron:
                 break;
         }
         Point3d corner = {};
@@ -202,7 +202,7 @@ struct Nested {
     }
 };
 
-Nested make_nested(Kind outer, Kind inner, RandomStream& random) {
+Nested make_nested(Nestable outer, Nestable inner, RandomStream& random) {
     const auto lengths = [&] {
         return Point3d{random.uniform(0.2, 2), random.uniform(0.2, 2), random.uniform(0.2, 2)};
     };
@@ -222,12 +222,12 @@ Nested make_nested(Kind outer, Kind inner, RandomStream& random) {
 class Containment : public ::testing::TestWithParam<int> {};
 
 TEST_P(Containment, IsRightNearTheBorder) {
-    const auto outer = Kind(GetParam());
+    const auto outer = Nestable(GetParam());
     for (int inner = 0; inner < kind_count; ++inner) {
         for (std::uint64_t i = 0; i < case_count(scaled(40, 8)); ++i) {
             const std::uint64_t seed = case_seed("containment" + std::to_string(GetParam() * kind_count + inner), i);
             RandomStream random(seed, 0);
-            const Nested nested = make_nested(outer, Kind(inner), random);
+            const Nested nested = make_nested(outer, Nestable(inner), random);
             for (const double distance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-9, 1e-11}) {
                 SCOPED_TRACE("kind " + std::to_string(inner) + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed) + ", " +
                              std::to_string(distance));

@@ -15,7 +15,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double unit_roundoff = std::numeric_limits<double>::epsilon();
 
 /// Returns the least m between two bounds for which the concave function has its greatest value in the ball: |y(m)| <= 1.
 double least_multiplier(const Vector& eigenvalues, const Vector& linear, double below, double above) {
@@ -45,12 +45,12 @@ double greatest_on_ball(const Quadratic& function) {
     const Vector& eigenvalues = solver.eigenvalues();
     const Vector linear = solver.eigenvectors().transpose() * function.linear;
     const double size = eigenvalues.cwiseAbs().maxCoeff() + linear.norm() + std::fabs(function.constant);
-    // Eigenvalues err by a few epsilon of the largest one, so the multiplier stays so far above them.
+    // Eigenvalues err by a few roundings of the largest one, so the multiplier stays so far above them.
     const double least =
-        std::max(eigenvalues.maxCoeff(), 0.0) + 16 * epsilon * size + std::numeric_limits<double>::min();
+        std::max(eigenvalues.maxCoeff(), 0.0) + 16 * unit_roundoff * size + std::numeric_limits<double>::min();
     const double m = least_multiplier(eigenvalues, linear, least, least + linear.norm());
     const Vector parts = linear.array().square() / (m - eigenvalues.array());
-    return function.constant + m + parts.sum() + 64 * epsilon * size;
+    return function.constant + m + parts.sum() + 64 * unit_roundoff * size;
 }
 
 }  // namespace octopair

@@ -30,7 +30,7 @@ struct Parts {
 Eigen::Vector3d from(const Point3d& point) { return {point[0], point[1], point[2]}; }
 Point3d from(const Eigen::Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
-Eigen::Matrix3d linear_part(const Pose& pose) {
+Eigen::Matrix3d turn_of(const Pose& pose) {
     Eigen::Matrix3d linear;
     for (int axis = 0; axis < 3; ++axis) linear.col(axis) = from(vector::column(pose, std::size_t(axis)));
     return linear;
@@ -71,7 +71,7 @@ Parts parts_of(const ConvexSolid& solid) {
 Parts parts_of(const PosedConvex& convex, const LocalConvex& local) {
     if (!convex.solid() || convex.solid()->core == Core::points) return {local.all_points(), local.radius(), {}};
     Parts parts = parts_of(*convex.solid());
-    const Eigen::Matrix3d turn = linear_part(local.pose());
+    const Eigen::Matrix3d turn = turn_of(local.pose());
     for (Point3d& centre : parts.centres) centre = vector::posed(local.pose(), centre);
     for (Ellipsoid& one : parts.ellipsoids)
         one = {turn * one.centre + from(vector::place(local.pose())), turn * one.map};
@@ -81,7 +81,7 @@ Parts parts_of(const PosedConvex& convex, const LocalConvex& local) {
 /// Returns true if all parts are more than `slack` below the surface of a solid that is not a hull.
 bool are_below(const ConvexSolid& solid, const Pose& pose, const Parts& parts, double slack) {
     // The pose is a rotation up to rounding, so its transpose is its inverse.
-    const Eigen::Matrix3d turn_back = linear_part(pose).transpose();
+    const Eigen::Matrix3d turn_back = turn_of(pose).transpose();
     const auto in_solid = [&](const Ellipsoid& one) {
         return Ellipsoid{turn_back * (one.centre - from(vector::place(pose))), turn_back * one.map};
     };
