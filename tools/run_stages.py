@@ -6,7 +6,7 @@
 STATUS and SECONDS are the exit status of scripts/setup and its time. The default is the stage release.
 
 The stages of a preset share a build. The builds run one after another, with low priority; as soon as a build is finished, its stages
-are tested, two at a time. So a stage whose tests wait leaves no core idle. Then come the stages `ranks` and `timing`, each alone.
+are tested, two at a time. So a stage whose tests wait leaves no core idle. Then come the stages of ranks and `timing`, each alone.
 """
 import argparse
 import dataclasses
@@ -66,20 +66,22 @@ STAGES = {
     "clang": Stage("clang", ("-L", "quick", "-LE", "skip_clang"),
                    ("octopair_base_test", "octopair_boxes_test", "octopair_engine_test", *EXACTNESS, "octopair_geometry_test",
                     "octopair_narrow_phase_test", "octopair_processes_test", "octopair_viewer_test"), (20000, 60), 100),
-    "asan": Stage("asan", ("-L", "quick|slow|ranks", "-LE", "skip_asan"), scenes=(10000, 20), share=25, options=PYTHON),
+    "asan": Stage("asan", ("-L", "quick|slow", "-LE", "skip_asan"), scenes=(10000, 20), share=25, options=PYTHON),
     "fuzz": Stage("asan", ("-L", "fuzz"), ("octopair_fuzzers",)),
     "tsan": Stage("tsan", ("-L", "quick", "-LE", "skip_tsan"),
                   ("octopair_base_test", "octopair_engine_test", "octopair_octree_test", "octopair_parallel_test",
                    "octopair_pipeline_test", "octopair_scene_test", "octopair_viewer_test")),
     # Ranks that wait poll, and each of their messages waits for all other processes: beside other stages they would cost three times as much.
     "ranks": Stage("release", ("-L", "ranks")),
+    "asan-ranks": Stage("asan", ("-L", "ranks", "-LE", "skip_asan"), ("octopair_bench_program", "octopair_mpi_test", "octopair_program"),
+                        (10000, 20), 25),
     "clang-ranks": Stage("clang", ("-L", "ranks", "-L", "exactness"), ("octopair_mpi_test",), (20000, 60)),
     "timing": Stage("release", ("-L", "timing"), options=PYTHON),
 }
 LONG_STAGES = {f"long-{preset}": Stage(preset, ("-L", "exactness"), EXACTNESS, (1000000, 2000), 100)
                for preset in ("release", "clang")}
 LONG_STAGES["long-packages"] = dataclasses.replace(STAGES["packages"], from_source=True)
-ALONE = ("ranks", "clang-ranks", "timing")
+ALONE = ("ranks", "clang-ranks", "asan-ranks", "timing")
 
 
 class Costs:
