@@ -75,7 +75,7 @@ STAGES = {
     "ranks": Stage("release", ("-L", "ranks")),
     "asan-ranks": Stage("asan", ("-L", "ranks", "-LE", "skip_asan"), ("octopair_bench_program", "octopair_mpi_test", "octopair_program"),
                         (10000, 20), 25),
-    "clang-ranks": Stage("clang", ("-L", "ranks", "-L", "exactness"), ("octopair_mpi_test",), (20000, 60)),
+    "clang-ranks": Stage("clang", ("-L", "ranks", "-R", "on_[12]_ranks"), ("octopair_mpi_test",), (20000, 60), 100),
     "timing": Stage("release", ("-L", "timing"), options=PYTHON),
 }
 LONG_STAGES = {f"long-{preset}": Stage(preset, ("-L", "exactness"), EXACTNESS, (1000000, 2000), 100)
