@@ -315,12 +315,12 @@ bool judge_objects(const PosedObject& a, const PosedObject& b, double reach, Fin
 }
 
 std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double any = std::numeric_limits<double>::infinity();
     const bool in_order = kind_of(a) <= kind_of(b);
     using Answer = std::optional<ObjectGap>;
     Answer gap = with_kind(in_order ? a : b, in_order ? b : a, Answer(), [&](const auto& pair) -> Answer {
         if (pair.meeting()) return ObjectGap();
-        const std::optional<Distance> found = pair.gap(infinity);
+        const std::optional<Distance> found = pair.gap(any);
         if (!found) return std::nullopt;
         return ObjectGap{found->at_least, found->nearest};
     });
