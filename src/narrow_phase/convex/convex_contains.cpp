@@ -137,6 +137,7 @@ bool hull_contains_disk(const PosedConvex& hull, const Ellipsoid& disk) {
         double middle, half;
     };
     std::vector<Arc> arcs;
+    arcs.reserve(first_arcs);
     for (int i = 0; i < first_arcs; ++i) {
         arcs.push_back({2 * std::numbers::pi * i / first_arcs, std::numbers::pi / first_arcs});
     }
