@@ -42,8 +42,8 @@ function(octopair_target target)
         target_compile_options(${target} PRIVATE -fsanitize=${OCTOPAIR_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
         target_link_options(${target} PUBLIC -fsanitize=${OCTOPAIR_SANITIZE})
-        # The older instruction sets run the source of the kernels with shorter vectors. Release builds test them
-        # (octopair_instruction_sets).
+        # Sanitized builds compile the kernels for the oldest and the newest instruction set only, because the source is the same for
+        # all. Release builds test the others (octopair_instruction_sets).
         target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4|HWY_AVX2)")
     endif()
 endfunction()

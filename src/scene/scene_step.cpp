@@ -136,6 +136,7 @@ bool Scene::State::expects_few_changes() const {
 
 void Scene::State::find_all(const std::stop_token& stop) {
     const auto begin = std::chrono::steady_clock::now();
+    states_.forget(SearchedStates::octree);
     if (!queried_) octree_.release();
     queried_ = false;
     const SceneSource source(objects_.table(), margin_);

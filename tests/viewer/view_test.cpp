@@ -105,7 +105,7 @@ bool shows(const LivePage& page, MovingScene& scene, const Point3d& origin) {
     return true;
 }
 
-/// What is subtracted from the coordinates of frames; known when the view has passed on its first step.
+/// Returns the origin of the coordinates in frames. The view chooses it when it passes on its first step.
 Point3d origin_of(const View& view) {
     const Json origin = Json::parse(get_page(view.address(), "/view.json").body)["origin"];
     return {origin[0], origin[1], origin[2]};
