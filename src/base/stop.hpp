@@ -3,13 +3,14 @@
 
 #include <stop_token>
 
+#include "base/test_hooks.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
 
 /// Throws: Error{cancelled} if a stop was requested. Steps call this every few milliseconds.
 inline void throw_if_stopped(const std::stop_token& stop) {
-    if (stop.stop_requested()) throw Error(ErrorCode::cancelled, "cancelled");
+    if (stop.stop_requested() || is_stop_planned()) throw Error(ErrorCode::cancelled, "cancelled");
 }
 
 }  // namespace octopair

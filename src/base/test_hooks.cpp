@@ -52,6 +52,8 @@ void count_path(Path path) { test_hooks().paths[std::size_t(path)].fetch_add(1, 
 
 bool planted(Fault fault) { return test_hooks().fault == fault; }
 
+bool is_stop_planned() { return test_hooks().polls_before_stop.fetch_sub(1, std::memory_order_relaxed) <= 0; }
+
 }  // namespace octopair
 
 #endif

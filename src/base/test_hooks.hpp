@@ -1,7 +1,6 @@
-// Test hooks: let tests count the paths that a call takes, make all limits small, and plant faults.
+// Test hooks: let tests count the paths that a call takes, make all limits small, plant faults and stop requests.
 //
-// - Only a build with OCTOPAIR_TEST_HOOKS has them. Without it, count_path() and planted() are empty constants that the
-//   compiler removes.
+// - Only a build with OCTOPAIR_TEST_HOOKS has them. Without it, the functions are empty constants that the compiler removes.
 // - The state is one TestHooks. If OCTOPAIR_TEST_HOOKS_FILE names a file, the state is in that file, which processes share. So
 //   the worker processes of a test use its tuning and fault, and count their paths together with the test.
 #pragma once
@@ -10,6 +9,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "base/tuning.hpp"
@@ -89,10 +89,15 @@ enum class Fault : unsigned {
 };
 inline constexpr unsigned fault_count = 14;
 
+/// Value of TestHooks::polls_before_stop with which no poll finds a stop request.
+inline constexpr std::int64_t never_stopped = std::numeric_limits<std::int64_t>::max();
+
 /// State that tests set and read. It holds no pointers, so it can lie in a file that processes share.
 struct TestHooks {
     Tuning tuning;
     Fault fault = Fault::none;
+    /// Number of polls for a stop request before polls find one, whether there is one or not.
+    std::atomic<std::int64_t> polls_before_stop = never_stopped;
     std::array<std::atomic<std::uint64_t>, path_names.size()> paths = {};  ///< number of times that each path was taken
 };
 
@@ -105,10 +110,13 @@ TestHooks& test_hooks();
 void count_path(Path path);
 /// Returns true if a test has planted this fault.
 bool planted(Fault fault);
+/// Counts a poll for a stop request. Returns true if a test has planned a stop for this poll or an earlier one.
+bool is_stop_planned();
 #else
 inline constexpr bool has_test_hooks = false;
 constexpr void count_path(Path) {}
 constexpr bool planted(Fault) { return false; }
+constexpr bool is_stop_planned() { return false; }
 #endif
 
 }  // namespace octopair

@@ -88,10 +88,12 @@ void ObjectTable::reserve(std::uint64_t more, bool with_padding, bool with_trait
         precision_ == Precision::float64 ? boxes->float64.reserve(all) : boxes->float32.reserve(all);
     }
     slots_.reserve(all);
-    padded_ |= with_padding;
-    with_traits_ |= with_traits;
-    if (padded_) paddings_.reserve(all);
-    if (with_traits_) traits_.reserve(all);
+    const bool padded = padded_ || with_padding, has_traits = with_traits_ || with_traits;
+    if (padded) paddings_.reserve(all);
+    if (has_traits) traits_.reserve(all);
+    // From here on nothing fails.
+    padded_ = padded;
+    with_traits_ = has_traits;
     if (padded_) paddings_.resize(slots_.size(), 0);
     if (with_traits_) traits_.resize(slots_.size(), {});
 }

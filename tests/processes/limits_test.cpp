@@ -9,6 +9,7 @@
 
 #include "processes/asked.hpp"
 #include "processes/leftovers.hpp"
+#include "support/at_allocation.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
@@ -95,6 +96,19 @@ TEST_F(WorkerLimits, OfDescriptorsLater) {
             (void)right_or_refused(*engine, scene_, {.how = How::stream});
         }
         expect_right(*engine, scene_, {.how = How::stream});
+    }
+}
+
+TEST_F(WorkerLimits, OfEachAllocation) {
+    const Scene small{"dense", 300, 1};
+    for (const How how : {How::list, How::stream}) {
+        const auto engine = make_process_engine(2);
+        const std::uint64_t failures =
+            test::fail_every_allocation([] { return 0; }, [&](int) { (void)test::ask(*engine, small, {.how = how}); },
+                                        [&](int, bool failed) {
+                                            if (failed) expect_right(*engine, small, {.how = how});
+                                        });
+        EXPECT_GT(failures, 5u);
     }
 }
 

@@ -124,6 +124,7 @@ public:
     }
 
     const Model& model() const { return model_; }
+    AnyScene& scene() { return scene_; }
 
 private:
     bool chance(double part) { return std::uniform_real_distribution<>(0, 1)(random_) < part; }
@@ -154,7 +155,7 @@ private:
     /// Checks queries in some histories and at some steps only: queries may build an octree, which the next step does
     /// not use.
     void check_queries() {
-        if constexpr (std::is_same_v<AnyScene, Scene>) {
+        if constexpr (requires { scene_.overlaps(Box3d(), 0u); }) {
             if (queried_ && chance(0.3)) QueryModel(model_, scene_, random_()).check();
         }
     }

@@ -38,9 +38,11 @@ inline RayResult cast(const Ray& ray, const Box3d& box, long double& along) {
 }
 
 /// Makes queries at places near the objects and elsewhere, and compares the answers with the model's.
+/// AnyScene: a class with the queries of Scene.
+template <typename AnyScene>
 class QueryModel {
 public:
-    QueryModel(const Model& model, Scene& scene, std::uint64_t seed) : scene_(scene), random_(seed) {
+    QueryModel(const Model& model, AnyScene& scene, std::uint64_t seed) : scene_(scene), random_(seed) {
         for (const auto& [index, object] : model.objects) all_.push_back(&object);
     }
 
@@ -160,7 +162,7 @@ private:
         ASSERT_EQ(answers.all, expected);
     }
 
-    Scene& scene_;
+    AnyScene& scene_;
     std::mt19937_64 random_;
     std::vector<const ModelObject*> all_;
     std::uint32_t groups_ = Scene::all_groups;

@@ -11,6 +11,7 @@
 #include "octopair/octopair.hpp"
 #include "scene/recording/recorder.hpp"
 #include "scene/recording/replay.hpp"
+#include "scene/recording_source.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
@@ -19,15 +20,6 @@ namespace {
 using test::error_of;
 using test::read_file;
 using test::TemporaryDirectory;
-
-RecordingSource source_of(const std::string& bytes) {
-    const auto read = [&bytes](std::uint64_t offset, std::span<std::byte> out) {
-        ASSERT_LE(offset, bytes.size());
-        ASSERT_LE(out.size(), bytes.size() - offset);
-        if (!out.empty()) std::memcpy(out.data(), bytes.data() + offset, out.size());
-    };
-    return {"r.rec", bytes.size(), read};
-}
 
 ReplayReport replay_bytes(const std::string& bytes, const ReplayOptions& options = {1, true}) {
     RecordingReader reader(source_of(bytes));

@@ -1,5 +1,5 @@
 // Tests remote scenes on random histories. Every call is also made to a local scene. Ids and results must be equal, and
-// brute force checks both. Sometimes the server restarts, or a step is cancelled.
+// brute force checks both. Sometimes the server restarts, a step is cancelled, or the memory of a call runs out.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -7,6 +7,7 @@
 
 #include "scene/history.hpp"
 #include "service/scenes/scene_server.hpp"
+#include "support/at_allocation.hpp"
 #include "support/cases.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
@@ -29,24 +30,24 @@ public:
     void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
         local_->add(objects, ids, traits);
         std::vector<ObjectId> given(ids.size());
-        remote_->add(objects, given, traits);
+        make([&] { remote_->add(objects, given, traits); });
         EXPECT_EQ(std::vector(ids.begin(), ids.end()), given);
     }
     void move(std::span<const ObjectId> ids, const Boxes& boxes) {
         local_->move(ids, boxes);
-        remote_->move(ids, boxes);
+        make([&] { remote_->move(ids, boxes); });
     }
     void sweep(std::span<const ObjectId> ids, const Boxes& boxes) {
         local_->sweep(ids, boxes);
-        remote_->sweep(ids, boxes);
+        make([&] { remote_->sweep(ids, boxes); });
     }
     void remove(std::span<const ObjectId> ids) {
         local_->remove(ids);
-        remote_->remove(ids);
+        make([&] { remote_->remove(ids); });
     }
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
         local_->set_traits(ids, traits);
-        remote_->set_traits(ids, traits);
+        make([&] { remote_->set_traits(ids, traits); });
     }
 
     const StepResult& step() {
@@ -80,6 +81,23 @@ public:
     bool contains(ObjectId id) const { return remote_->contains(id); }
 
 private:
+    /// Makes a call of the remote scene, which does not use the network. Before it succeeds, it may fail in allocations.
+    template <typename Call>
+    void make(Call&& call) {
+        const std::uint64_t size = remote_->size(), indices = remote_->indices();
+        while (random_() % 4 == 0) {
+            try {
+                const AtAllocation failure(random_() % (1u << random_() % 5), fail_allocation,
+                                           AtAllocation::Threads::this_one);
+                return call();
+            } catch (const std::bad_alloc&) {
+                EXPECT_EQ(remote_->size(), size);
+                EXPECT_EQ(remote_->indices(), indices);
+            }
+        }
+        call();
+    }
+
     /// Makes a step and cancels it at a random moment. Repeats the step if it was cancelled.
     const StepResult& step_twice() {
         const std::vector<Pair> before = remote_->pairs().to_vector();

@@ -1,0 +1,110 @@
+// Tests that the readers of octopair may run out of memory at each of their allocations. Files that Assimp reads are left out.
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/boxes/npy.hpp"
+#include "io/results/baseline.hpp"
+#include "io/scene_reader.hpp"
+#include "io/temporary.hpp"
+#include "scene/recording/recorder.hpp"
+#include "scene/recording/replay.hpp"
+#include "scene/recording_source.hpp"
+#include "support/at_allocation.hpp"
+
+namespace octopair::test {
+namespace {
+
+using io::LoadedScene;
+using io::NpyType;
+
+constexpr const char* cube_obj =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng a part with a long name\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+constexpr const char* cube_off = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+constexpr const char* triangle_stl =
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid "
+    "a\n";
+constexpr const char* triangle_ply =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+    "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+constexpr const char* shapes_json = R"({
+    "shapes": {"ball of the scene": {"type": "sphere", "radius": 1}, "part": {"type": "mesh", "file": "part.obj"}},
+    "objects": [
+        {"name": "an object with a long name", "shape": "ball of the scene", "position": [1, 2, 3], "padding": 0.5},
+        {"shape": {"type": "convex_hull", "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]}},
+        {"shape": "part"}]})";
+
+class EveryAllocation : public ::testing::TestWithParam<std::pair<const char*, std::string>> {
+protected:
+    TemporaryDirectory directory_;
+};
+
+INSTANTIATE_TEST_SUITE_P(
+    , EveryAllocation,
+    ::testing::Values(std::pair("boxes.csv", "minx,miny,minz,maxx,maxy,maxz\n0,0,0,1,1,1\n1,1,1,2,2,2\n"),
+                      std::pair("boxes.npy", npy_of(NpyType::float32, {2, 6}, std::vector<float>(12))),
+                      std::pair("mesh.obj", cube_obj), std::pair("mesh.off", cube_off),
+                      std::pair("mesh.stl", triangle_stl), std::pair("mesh.ply", triangle_ply),
+                      std::pair("scene.json", shapes_json)),
+    [](const auto& info) { return std::string(info.param.first).substr(std::string(info.param.first).find('.') + 1); });
+
+TEST_P(EveryAllocation, OfAReaderMayFail) {
+    const auto& [name, content] = GetParam();
+    const std::string path = directory_.file(name);
+    write_file(directory_.file("part.obj"), cube_obj);
+    write_file(path, content);
+    const std::uint64_t objects = io::read_scene(path, {}).objects;
+    EXPECT_GT(objects, 0u);
+    const std::uint64_t failures =
+        fail_every_allocation([] { return std::optional<LoadedScene>(); },
+                              [&](std::optional<LoadedScene>& scene) { scene.emplace(io::read_scene(path, {})); },
+                              [&](std::optional<LoadedScene>& scene, bool failed) {
+                                  EXPECT_EQ(scene.has_value(), !failed);
+                                  if (scene) EXPECT_EQ(scene->objects, objects);
+                              });
+    EXPECT_GT(failures, 3u);
+}
+
+TEST(EveryAllocationOfABaseline, MayFail) {
+    const std::string text = R"({"a":"the first object","b":"the second object","class":"crossing"})"
+                             "\n";
+    const std::uint64_t failures = fail_every_allocation(
+        [] { return std::optional<io::Baseline>(); },
+        [&](std::optional<io::Baseline>& made) { made.emplace(io::Baseline::of_text(text, "old.jsonl", false)); },
+        [](std::optional<io::Baseline>& made, bool failed) {
+            EXPECT_EQ(made.has_value(), !failed);
+            if (made) EXPECT_EQ(made->counts().gone, 1u);
+        });
+    EXPECT_GT(failures, 3u);
+}
+
+TEST(EveryAllocationOfARecording, MayFail) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("r.rec");
+    {
+        SceneOptions options;
+        options.recording = path;
+        Scene scene(options);
+        const std::vector<Box3f> boxes(40, Box3f{{0, 0, 0}, {1, 1, 1}});
+        std::vector<ObjectId> ids(boxes.size());
+        scene.add({std::span<const Box3f>(boxes)}, ids);
+        scene.step();
+        scene.remove(std::span(ids).first(3));
+        scene.step();
+    }
+    const std::string bytes = read_file(path);
+    const std::uint64_t failures =
+        fail_every_allocation([] { return ReplayReport(); },
+                              [&](ReplayReport& report) {
+                                  RecordingReader reader(source_of(bytes));
+                                  report = replay(reader, {1, true});
+                              },
+                              [](ReplayReport& report, bool failed) { EXPECT_EQ(report.steps, failed ? 0u : 2u); });
+    EXPECT_GT(failures, 10u);
+}
+
+}  // namespace
+}  // namespace octopair::test
