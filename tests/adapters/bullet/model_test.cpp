@@ -1,14 +1,17 @@
-// Tests the broad phase for Bullet on random sequences of calls, against a model that tests all pairs of boxes.
+// Tests the broad phase for Bullet on random sequences of calls, against a model that tests all pairs of boxes. Some calls fail, and
+// are made again.
 //
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <random>
 #include <set>
 
 #include "octopair/bullet/broadphase.hpp"
+#include "support/at_allocation.hpp"
 #include "support/cases.hpp"
 #include "support/scale.hpp"
 
@@ -29,8 +32,11 @@ std::set<Numbers> pairs_in(btOverlappingPairCache& cache) {
 
 /// Refuses the pairs whose numbers have a sum that `refused` divides; 0: none.
 struct SumFilter : btOverlapFilterCallback {
+    struct Failure {};
     int refused = 0;
+    mutable int calls_before_failure = -1;  // below 0: no failure
     bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+        if (calls_before_failure-- == 0) throw Failure();
         return refused == 0 || (a->m_uniqueId + b->m_uniqueId) % refused != 0;
     }
 };
@@ -52,7 +58,11 @@ public:
         for (int step = 0; step < steps && !::testing::Test::HasFailure(); ++step) {
             change();
             check_queries();
-            broadphase_.calculateOverlappingPairs(nullptr);
+            call([&] { broadphase_.calculateOverlappingPairs(nullptr); },
+                 [&] {
+                     if (chance(0.3)) create();
+                     if (chance(0.3)) destroy();
+                 });
             EXPECT_EQ(pairs_in(*broadphase_.getOverlappingPairCache()), expected());
             check_queries();
         }
@@ -60,7 +70,34 @@ public:
         EXPECT_EQ(broadphase_.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
     }
 
+    int failures() const { return failures_; }
+
 private:
+    /// Makes a call. Before it succeeds, it may fail in allocations and in the filter. Calls between() after each failure.
+    template <typename Call>
+    void call(
+        Call&& make, const std::function<void()>& between = [] {}) {
+        while (chance(0.2)) {
+            const AtAllocation failure(random_() % (1u << random_() % 7), fail_allocation);
+            filter_.calls_before_failure = chance(0.5) ? int(random_() % 4) : -1;
+            try {
+                make();
+                filter_.calls_before_failure = -1;
+                return;
+            } catch (const std::bad_alloc&) {
+                ++failures_;
+            } catch (const SumFilter::Failure&) {
+                ++failures_;
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
+                ++failures_;
+            }
+            filter_.calls_before_failure = -1;
+            between();
+        }
+        make();
+    }
+
     bool chance(double part) { return std::uniform_real_distribution<>(0, 1)(random_) < part; }
     btScalar number(double low, double high) { return btScalar(std::uniform_real_distribution<>(low, high)(random_)); }
     btVector3 place() { return {number(-10, 10), number(-10, 10), number(-10, 10)}; }
@@ -83,17 +120,21 @@ private:
     void create() {
         const btVector3 lower = place();
         const int group = 1 << random_() % 3, mask = int(random_() % 8);
-        proxies_.push_back(broadphase_.createProxy(lower, lower + size(), 0, nullptr, group, mask, nullptr));
+        const btVector3 upper = lower + size();
+        btBroadphaseProxy* made = nullptr;
+        call([&] { made = broadphase_.createProxy(lower, upper, 0, nullptr, group, mask, nullptr); });
+        proxies_.push_back(made);
     }
     void move(btBroadphaseProxy* proxy) {
         if (chance(0.2)) proxy->m_collisionFilterMask = int(random_() % 8);
         const btVector3 lower = chance(0.5) ? place() : proxy->m_aabbMin + btVector3(number(-1, 1), 0, 0);
-        broadphase_.setAabb(proxy, lower, lower + size(), nullptr);
+        const btVector3 upper = lower + size();
+        call([&] { broadphase_.setAabb(proxy, lower, upper, nullptr); });
     }
     void destroy() {
         if (proxies_.size() < 2) return;
         const std::size_t at = std::size_t(random_() % proxies_.size());
-        broadphase_.destroyProxy(proxies_[at], nullptr);
+        call([&] { broadphase_.destroyProxy(proxies_[at], nullptr); });
         proxies_.erase(proxies_.begin() + std::ptrdiff_t(at));
     }
     /// A callback that has accepted a pair is not asked again until the boxes part. So it only accepts more here.
@@ -126,7 +167,10 @@ private:
         check_ray();
         Collected found;
         const btVector3 lower = place(), upper = lower + size();
-        broadphase_.aabbTest(lower, upper, found);
+        call([&] {
+            found = {};
+            broadphase_.aabbTest(lower, upper, found);
+        });
         std::set<int> wanted;
         for (const btBroadphaseProxy* proxy : proxies_) {
             if (TestAabbAgainstAabb2(lower, upper, proxy->m_aabbMin, proxy->m_aabbMax))
@@ -157,6 +201,7 @@ private:
     }
 
     std::mt19937_64 random_;
+    int failures_ = 0;
     SumFilter filter_;
     btSortedOverlappingPairCache sorted_;
     bullet::Broadphase broadphase_;
@@ -165,11 +210,15 @@ private:
 
 TEST(BulletModel, HasThePairsAndAnswersOfAllPairsTested) {
     const std::uint64_t histories = test::case_count(test::scaled(300, 10));
+    int failures = 0;
     for (std::uint64_t i = 0; i < histories && !HasFailure(); ++i) {
         const std::uint64_t seed = test::case_seed("bullet", i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        History(seed).run(30);
+        History history(seed);
+        history.run(30);
+        failures += history.failures();
     }
+    EXPECT_GT(failures, 0);
 }
 
 /// Pairs of destroyed proxies leave the cache, also those that others have added.

@@ -1,4 +1,5 @@
-// Random sequences of calls, compared with FCL's naive manager.
+// Random sequences of calls, compared with FCL's naive manager. Some calls fail, and are made again.
+#include "support/at_allocation.hpp"
 #include "world.hpp"
 
 namespace octopair::test {
@@ -47,7 +48,28 @@ public:
         }
     }
 
+    int failures() const { return failures_; }
+
 private:
+    /// Makes a call of the manager. Before it succeeds, it may fail in allocations.
+    template <typename Call>
+    void call(Call&& make) {
+        const std::size_t size = manager_.size();
+        while (world_.random() % 4 == 0) {
+            const AtAllocation failure(world_.random() % (1u << world_.random() % 7), fail_allocation);
+            try {
+                return make();
+            } catch (const std::bad_alloc&) {
+                ++failures_;
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
+                ++failures_;
+            }
+            EXPECT_EQ(manager_.size(), size);
+        }
+        make();
+    }
+
     void add(std::size_t count) {
         std::vector<FclObject<S>*> fresh = world_.add_random(count, size_);
         if (!former_.empty() && world_.random() % 2 == 0) {
@@ -56,16 +78,13 @@ private:
         }
         objects_.insert(objects_.end(), fresh.begin(), fresh.end());
         naive_.registerObjects(fresh);
-        if (fresh.size() == 1)
-            manager_.registerObject(fresh[0]);
-        else
-            manager_.registerObjects(fresh);
+        call([&] { fresh.size() == 1 ? manager_.registerObject(fresh[0]) : manager_.registerObjects(fresh); });
     }
     void remove() {
         if (objects_.empty()) return;
         const auto at = objects_.begin() + std::ptrdiff_t(world_.random() % objects_.size());
         naive_.unregisterObject(*at);
-        manager_.unregisterObject(*at);
+        call([&] { manager_.unregisterObject(*at); });
         former_.push_back(*at);
         objects_.erase(at);
     }
@@ -76,21 +95,19 @@ private:
             moved.push_back(objects_[world_.random() % objects_.size()]);
             world_.move(*moved.back());
         }
-        if (count == 1)
-            manager_.update(moved[0]);
-        else
-            manager_.update(moved);
+        call([&] { count == 1 ? manager_.update(moved[0]) : manager_.update(moved); });
     }
     void move_all() {
         for (FclObject<S>* const object : objects_) world_.move(*object);
-        manager_.update();
+        call([&] { manager_.update(); });
     }
     void clear() {
         naive_.clear();
-        manager_.clear();
+        call([&] { manager_.clear(); });
         former_ = std::exchange(objects_, {});
     }
     void check_pairs() {
+        call([&] { (void)collide<S>(manager_); });
         ASSERT_EQ(collide<S>(manager_), collide<S>(naive_));
         ASSERT_EQ(smallest_distance<S>(manager_), smallest_distance<S>(naive_));
         std::vector<FclObject<S>*> objects;
@@ -103,6 +120,8 @@ private:
         for (FclObject<S>* const object : objects_) {
             if (object->getAABB().overlap(query->getAABB())) expected.emplace_back(object, query);
         }
+        call([&] { (void)collide<S>(manager_, query); });
+        call([&] { (void)smallest_distance<S>(manager_, query); });
         ASSERT_EQ(collide<S>(manager_, query), expected);
         ASSERT_EQ(smallest_distance<S>(manager_, query), smallest_distance<S>(naive_, query));
         ::fcl::NaiveCollisionManager<S> others;
@@ -115,6 +134,7 @@ private:
     }
 
     FclWorld<S> world_;
+    int failures_ = 0;
     double size_;
     BroadPhaseManager<S> manager_;
     ::fcl::NaiveCollisionManager<S> naive_;
@@ -122,19 +142,27 @@ private:
 };
 
 TEST(FclProperty, SequencesOfCallsInDouble) {
+    int failures = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         SCOPED_TRACE(seed);
-        Sequence<double>(seed).run(150);
+        Sequence<double> sequence(seed);
+        sequence.run(150);
+        failures += sequence.failures();
         if (HasFatalFailure()) return;
     }
+    EXPECT_GT(failures, 0);
 }
 
 TEST(FclProperty, SequencesOfCallsInFloat) {
+    int failures = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
         SCOPED_TRACE(seed);
-        Sequence<float>(seed).run(150);
+        Sequence<float> sequence(seed);
+        sequence.run(150);
+        failures += sequence.failures();
         if (HasFatalFailure()) return;
     }
+    EXPECT_GT(failures, 0);
 }
 
 }  // namespace

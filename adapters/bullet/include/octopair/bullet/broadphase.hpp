@@ -15,6 +15,8 @@
 // Queries   rayTest() and aabbTest() use the current boxes, also between steps. They call the callback in an order that depends on the
 //           boxes alone.
 // Errors    octopair::Error{bad_input} for a box that is not finite or has min > max. Bullet does not call setAabb() with such a box.
+//           Exceptions of the filter callback propagate. After a failed call all other calls work; if calculateOverlappingPairs()
+//           fails, the cache may lack pairs until it succeeds.
 // Threads   One thread at a time. `threads` threads search for pairs.
 #pragma once
 
@@ -48,17 +50,22 @@ public:
 
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
         Proxy& gone = *static_cast<Proxy*>(proxy);
+        proxies_.reserve_removal();
         const int before = cache_->getNumOverlappingPairs();
         // The program may have added pairs that are not among the partners. Only a search of the whole cache finds them.
-        const bool are_known = before == expected_ && !cache_->hasDeferredRemoval();
-        for (const std::uint32_t index : gone.partners) {
-            Proxy& partner = *proxies_.at(index);
-            std::erase(partner.partners, gone.id.index);
-            if (are_known) cache_->removeOverlappingPair(&gone, &partner, dispatcher);
+        const bool was_complete = std::exchange(is_complete_, false);
+        const bool are_known = was_complete && before == expected_ && !cache_->hasDeferredRemoval();
+        if (was_complete) {
+            for (const std::uint32_t index : gone.partners) {
+                Proxy& partner = *proxies_.at(index);
+                std::erase(partner.partners, gone.id.index);
+                if (are_known) cache_->removeOverlappingPair(&gone, &partner, dispatcher);
+            }
         }
         if (!are_known) cache_->removeOverlappingPairsContainingProxy(&gone, dispatcher);
         expected_ -= before - cache_->getNumOverlappingPairs();
         proxies_.remove(gone);
+        is_complete_ = was_complete;
     }
 
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
@@ -132,23 +139,31 @@ private:
             if (overlap(pair)) offer(pair);
         }
     }
+    void restore_partners(Scene& scene);
     void restore_cache(Scene& scene);
 
     Proxies proxies_;
     std::unique_ptr<btOverlappingPairCache> own_cache_;
     btOverlappingPairCache* cache_;
     int expected_ = 0;           // number of pairs in the cache, unless the program changes it
+    bool is_complete_ = true;    // false: a call failed before partners and cache had all its changes
     std::vector<Pair> refused_;  // overlapping pairs that the filter callback has refused
     std::uint64_t rays_ = 0;
 };
 
 inline void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     Scene& scene = proxies_.flush(cache_->getOverlapFilterCallback() == nullptr);
-    const bool is_ours = cache_->getNumOverlappingPairs() == expected_;
+    const bool is_ours = is_complete_ && cache_->getNumOverlappingPairs() == expected_;
     const StepResult& step = scene.step();
-    for (const Pair& pair : step.ended) end_pair(pair, dispatcher);
-    if (!step.ended.empty() && cache_->hasDeferredRemoval()) remove_ended(dispatcher);
-    for (const Pair& pair : step.began) begin_pair(pair);
+    const bool was_complete = std::exchange(is_complete_, false);
+    if (was_complete) {
+        for (const Pair& pair : step.ended) end_pair(pair, dispatcher);
+        if (!step.ended.empty() && cache_->hasDeferredRemoval()) remove_ended(dispatcher);
+        for (const Pair& pair : step.began) begin_pair(pair);
+    } else {
+        restore_partners(scene);
+        remove_ended(dispatcher);
+    }
     if (is_ours) {
         offer_refused_again();
         for (const Pair& pair : step.began) offer(pair);
@@ -156,9 +171,10 @@ inline void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
         restore_cache(scene);
     }
     expected_ = cache_->getNumOverlappingPairs();
+    is_complete_ = true;
 }
 
-/// Removes the pairs whose boxes have parted from a cache that removes single pairs only in a search of all.
+/// Removes the pairs whose boxes have parted by a search of the whole cache.
 inline void Broadphase::remove_ended(btDispatcher* dispatcher) {
     struct Parted : btOverlapCallback {
         explicit Parted(const Broadphase& of) : broadphase(of) {}
@@ -172,7 +188,15 @@ inline void Broadphase::remove_ended(btDispatcher* dispatcher) {
     cache_->processAllOverlappingPairs(&parted, dispatcher);
 }
 
-/// Adds the pairs again that the program has removed from the cache.
+/// Finds the partners of all proxies anew, after a failure.
+inline void Broadphase::restore_partners(Scene& scene) {
+    proxies_.for_each([](Proxy& proxy) { proxy.partners.clear(); });
+    for (const std::span<const Pair> chunk : scene.pairs().chunks()) {
+        for (const Pair& pair : chunk) begin_pair(pair);
+    }
+}
+
+/// Adds the pairs that the cache lacks, because the program has removed them or because a step failed.
 inline void Broadphase::restore_cache(Scene& scene) {
     refused_.clear();
     for (const std::span<const Pair> chunk : scene.pairs().chunks()) {

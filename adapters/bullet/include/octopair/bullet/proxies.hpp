@@ -46,23 +46,28 @@ public:
         check(made.m_aabbMin, made.m_aabbMax);
         auto proxy = std::make_unique<Proxy>(made.m_aabbMin, made.m_aabbMax, made.m_clientObject,
                                              made.m_collisionFilterGroup, made.m_collisionFilterMask);
-        proxy->m_uniqueId = ++last_id_;
         proxy->position = new_.size();
         new_.push_back(std::move(proxy));
+        new_.back()->m_uniqueId = ++last_id_;
         return *new_.back();
     }
     /// Sets the box of a proxy. Throws: Error{bad_input} if it is not finite or min > max.
     void move(Proxy& proxy, const btVector3& lower, const btVector3& upper) {
         if (proxy.m_aabbMin == lower && proxy.m_aabbMax == upper) return;
         check(lower, upper);
+        if (!proxy.is_queued) changed_.push_back(&proxy);
         proxy.m_aabbMin = lower;
         proxy.m_aabbMax = upper;
         if (proxy.is_queued) return;
         proxy.is_queued = true;
-        proxy.position = changed_.size();
-        changed_.push_back(&proxy);
+        proxy.position = changed_.size() - 1;
     }
-    void remove(Proxy& proxy) {
+    /// Reserves memory for a call of remove().
+    void reserve_removal() {
+        if (removed_.size() == removed_.capacity()) removed_.reserve(2 * removed_.size() + 1);
+    }
+    /// Requires: reserve_removal() was called before each call.
+    void remove(Proxy& proxy) noexcept {
         if (proxy.is_new) {
             new_[proxy.position] = nullptr;
             return;
@@ -81,16 +86,18 @@ public:
     }
 
     /// Sends all changes to the scene. `with_filters`: groups and masks decide which proxies make pairs.
+    /// If the call fails, the next one sends the changes that the scene does not have.
     Scene& flush(bool with_filters) {
-        const bool new_rule = with_filters != with_filters_;
+        is_new_rule_ |= with_filters != with_filters_;
         with_filters_ = with_filters;
         scene_.remove(removed_);
         removed_.clear();
         move_changed();
-        if (new_rule) {
+        if (is_new_rule_) {
             for (const auto& proxy : of_index_) {
                 if (proxy != nullptr) set_traits(*proxy);
             }
+            is_new_rule_ = false;
         }
         add_new();
         return scene_;
@@ -135,8 +142,8 @@ private:
     void set_traits(Proxy& proxy) {
         const Traits traits = wanted_traits(proxy);
         if (proxy.traits == traits) return;
-        proxy.traits = traits;
         scene_.set_traits(std::span(&proxy.id, 1), std::span(&traits, 1));
+        proxy.traits = traits;
     }
 
     void move_changed() {
@@ -144,13 +151,15 @@ private:
         boxes_.clear();
         for (Proxy* const proxy : changed_) {
             if (proxy == nullptr) continue;
-            proxy->is_queued = false;
             set_traits(*proxy);
             ids_.push_back(proxy->id);
             boxes_.push_back(box_of(proxy->m_aabbMin, proxy->m_aabbMax));
         }
-        changed_.clear();
         scene_.move(ids_, std::span<const Box<Real>>(boxes_));
+        for (Proxy* const proxy : changed_) {
+            if (proxy != nullptr) proxy->is_queued = false;
+        }
+        changed_.clear();
     }
 
     void add_new() {
@@ -158,15 +167,20 @@ private:
         if (new_.empty()) return;
         boxes_.clear();
         traits_.clear();
+        for (std::size_t i = 0; i < new_.size(); ++i) new_[i]->position = i;
         for (const auto& proxy : new_) {
             boxes_.push_back(box_of(proxy->m_aabbMin, proxy->m_aabbMax));
-            traits_.push_back(proxy->traits = wanted_traits(*proxy));
-            note_length(*proxy);
+            traits_.push_back(wanted_traits(*proxy));
         }
         ids_.resize(new_.size());
+        // Reserves all memory before the scene changes.
+        const std::size_t most = std::size_t(scene_.indices()) + new_.size();
+        if (most > of_index_.capacity()) of_index_.reserve(2 * most);
         scene_.add(Objects{std::span<const Box<Real>>(boxes_)}, ids_, traits_);
-        of_index_.resize(scene_.indices());
+        of_index_.resize(std::size_t(scene_.indices()));
         for (std::size_t i = 0; i < new_.size(); ++i) {
+            note_length(*new_[i]);
+            new_[i]->traits = traits_[i];
             new_[i]->id = ids_[i];
             new_[i]->is_new = new_[i]->is_queued = false;
             of_index_[ids_[i].index] = std::move(new_[i]);
@@ -184,6 +198,7 @@ private:
     unsigned threads_;
     Scene scene_;
     bool with_filters_ = true;
+    bool is_new_rule_ = false;  // with_filters_ has changed, and not all proxies in the scene have the traits that it requires
     int last_id_ = 0;
     std::vector<std::unique_ptr<Proxy>> of_index_;  // by scene index
     std::vector<std::unique_ptr<Proxy>> new_;

@@ -13,7 +13,6 @@
 #include <string>
 #include <type_traits>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "octopair/fcl/object_boxes.hpp"
@@ -40,15 +39,20 @@ public:
     void add(std::span<Object* const> objects) {
         fresh_.clear();
         boxes_to_send_.clear();
-        for (std::size_t i = 0; i < objects.size(); ++i) {
-            if (indices_.contains(objects[i])) continue;
-            Box<S> box = bounding_box(*objects[i], *objects[i]->collisionGeometry(), options_.boxes);
-            if (!make_valid(box)) refuse_box(box, "object " + std::to_string(i) + " of the call");
-            boxes_to_send_.push_back(box);
-            fresh_.push_back(objects[i]);
+        fresh_.reserve(objects.size());
+        try {
+            for (std::size_t i = 0; i < objects.size(); ++i) {
+                if (!indices_.emplace(objects[i], no_index).second) continue;
+                fresh_.push_back(objects[i]);
+                Box<S> box = bounding_box(*objects[i], *objects[i]->collisionGeometry(), options_.boxes);
+                if (!make_valid(box)) refuse_box(box, "object " + std::to_string(i) + " of the call");
+                boxes_to_send_.push_back(box);
+            }
+            add_fresh();
+        } catch (...) {
+            for (const Object* const object : fresh_) indices_.erase(object);
+            throw;
         }
-        if (fresh_.size() > 1) remove_repeated();
-        add_fresh();
     }
 
     /// Removes an object. Does nothing if the set does not have it.
@@ -64,16 +68,8 @@ public:
     }
 
     void clear() {
-        scene_ = Scene(scene_options());
+        clear_arrays();
         indices_.clear();
-        objects_.clear();
-        geometries_.clear();
-        boxes_.clear();
-        ids_.clear();
-        registrations_.clear();
-        ordered_ = true;
-        order_is_stale_ = true;
-        changes_ = queries_ = 0;
     }
 
     /// Gives the scene the present boxes of all objects that moved. Throws: Error{bad_input} for an invalid box.
@@ -145,6 +141,19 @@ private:
     }
     static Objects as_objects(const std::vector<Box<S>>& boxes) { return {.boxes = std::span<const Box<S>>(boxes)}; }
 
+    /// Empties the scene and all arrays, but not indices_.
+    void clear_arrays() {
+        scene_ = Scene(scene_options());
+        objects_.clear();
+        geometries_.clear();
+        boxes_.clear();
+        ids_.clear();
+        registrations_.clear();
+        ordered_ = true;
+        order_is_stale_ = true;
+        changes_ = queries_ = 0;
+    }
+
     void note_changes(std::size_t count) {
         changes_ += count;
         queries_ = 0;
@@ -188,32 +197,21 @@ private:
         note_changes(changed_.size());
     }
 
-    /// Leaves only the first one of equal objects in fresh_, with its box in boxes_to_send_.
-    void remove_repeated() {
-        std::unordered_set<const Object*> seen;
-        seen.reserve(fresh_.size());
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < fresh_.size(); ++i) {
-            if (!seen.insert(fresh_[i]).second) continue;
-            fresh_[kept] = fresh_[i];
-            boxes_to_send_[kept++] = boxes_to_send_[i];
-        }
-        fresh_.resize(kept);
-        boxes_to_send_.resize(kept);
-    }
-
-    /// Adds the objects of fresh_ with the boxes of boxes_to_send_.
+    /// Adds the objects of fresh_ with the boxes of boxes_to_send_. Requires: indices_ has these objects, with no_index.
     void add_fresh() {
         if (fresh_.empty()) return;
-        if (size() == 0 && !objects_.empty()) clear();
+        const bool was_empty = size() == fresh_.size();
+        if (was_empty && !objects_.empty()) clear_arrays();
         changed_.resize(fresh_.size());
+        reserve(std::size_t(scene_.indices()) + fresh_.size());
         scene_.add(as_objects(boxes_to_send_), changed_);
+        // From here on nothing fails.
         grow(std::size_t(scene_.indices()));
         for (std::size_t i = 0; i < fresh_.size(); ++i) {
             const std::uint32_t index = changed_[i].index;
-            ordered_ &= last_index_ < index || indices_.empty();
+            ordered_ &= last_index_ < index || (was_empty && i == 0);
             last_index_ = index;
-            indices_.emplace(fresh_[i], index);
+            indices_.find(fresh_[i])->second = index;
             objects_[index] = fresh_[i];
             geometries_[index] = fresh_[i]->collisionGeometry().get();
             boxes_[index] = boxes_to_send_[i];
@@ -224,6 +222,16 @@ private:
         note_changes(fresh_.size());
     }
 
+    /// Reserves memory for a number of indices, so that grow() does not fail.
+    void reserve(std::size_t indices) {
+        if (indices <= objects_.capacity()) return;
+        const std::size_t more = std::max(indices, 2 * objects_.capacity());
+        registrations_.reserve(more);
+        ids_.reserve(more);
+        boxes_.reserve(more);
+        geometries_.reserve(more);
+        objects_.reserve(more);  // last: its capacity is the smallest one
+    }
     void grow(std::size_t indices) {
         objects_.resize(indices);
         geometries_.resize(indices);
@@ -246,6 +254,8 @@ private:
         const auto& all = order();
         return std::size_t(std::find(all.begin(), all.end(), index) - all.begin());
     }
+
+    static constexpr std::uint32_t no_index = ~std::uint32_t(0);  ///< index of an object while add() runs
 
     ManagerOptions options_;
     mutable Scene scene_;
