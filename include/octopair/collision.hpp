@@ -38,7 +38,7 @@ enum class DepthKind : std::uint8_t {
 struct Contact {
     static constexpr std::uint32_t no_feature = 0xFFFFFFFF;
 
-    Point3d point = {};                    ///< contact point; between convex shapes it lies in both
+    Point3d point = {};                    ///< contact point; between convex shapes it lies in both (docs/formats.md)
     Point3d normal = {};                   ///< unit vector, from a to b
     double depth = 0;                      ///< penetration depth, >= 0
     std::uint32_t feature_a = no_feature;  ///< index of the triangle, if a is a mesh

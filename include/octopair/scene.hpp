@@ -32,6 +32,7 @@
 #include "octopair/octants.hpp"
 #include "octopair/pair_list.hpp"
 #include "octopair/queries.hpp"
+#include "octopair/summary.hpp"
 
 namespace [[gnu::visibility("default")]] octopair {
 
@@ -118,6 +119,14 @@ public:
     /// Returns the pairs of the boxes that the last step searched, in ascending order: with slack, enlarged boxes, whose pairs contain
     /// pairs(). They depend on how objects moved before. Valid until the next step.
     const PairList& enlarged_pairs();
+
+    /// Compares pairs() with the pairs that a second algorithm finds. It shares no code with the octree (docs/design.md, "Certificates").
+    /// The pairs are those of the last step, so call it directly after step(): also after a step with swept objects.
+    /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} if there was no step yet, or if an object was added,
+    /// changed or removed after the last step; Error{resource_limit} if the memory does not suffice; Error{cancelled} within 200 ms after a
+    /// stop request.
+    /// Complexity: as Options::verify, on the scene's threads. After a step with swept objects, also a copy of the boxes.
+    Verification verify(std::stop_token stop = {});
 
     static constexpr std::uint32_t all_groups = ~std::uint32_t(0);
 

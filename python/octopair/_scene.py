@@ -199,6 +199,20 @@ class Scene(SceneCalls):
         """Returns the pairs of the boxes that the last step searched: with slack, enlarged boxes. They contain :meth:`pairs`."""
         return self._scene.enlarged_pairs()
 
+    def verify(self) -> None:
+        """Compares :meth:`pairs` with the pairs that a second algorithm finds, which shares no code with the octree.
+
+        Call it directly after :meth:`step`.
+
+        Raises
+        ------
+        EngineError
+            if a pair is wrong or missing; the message names the pair
+        UsageError
+            if there was no step yet, or if an object was added, changed or removed after the last step
+        """
+        self._scene.verify()
+
     def boxes(self) -> Array:
         """Returns a copy of the current boxes by index; shape (:attr:`indices`, 6), in the scene's dtype.
 

@@ -54,6 +54,9 @@ public:
     py::array enlarged_pairs() {
         return list([&] { return &scene().enlarged_pairs(); });
     }
+    void verify() {
+        run_until_stopped([&](const std::stop_token& stop) { (void)scene().verify(stop); });
+    }
     /// Queries: boxes (n, 6), spheres (n, 4: centre and radius), rays (n, 7: origin, direction, longest), all float64.
     py::tuple overlaps(const py::array& queries, std::uint32_t groups) {
         const auto find = [&](auto rows, auto& answers) { scene().overlaps(rows, answers, groups); };
@@ -149,6 +152,7 @@ void bind_scenes(py::module_& module) {
     py::class_<LocalScene, PythonScene<Scene>> scene(module, "Scene");
     scene.def(py::init(&make_scene), py::arg("options"))
         .def("enlarged_pairs", &LocalScene::enlarged_pairs)
+        .def("verify", &LocalScene::verify)
         .def("boxes", &LocalScene::boxes)
         .def("octants", &LocalScene::octants)
         .def("overlaps", &LocalScene::overlaps, py::arg("queries"), py::arg("groups"))

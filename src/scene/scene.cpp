@@ -153,6 +153,11 @@ bool Scene::exists(std::uint32_t index) const noexcept {
 }
 Boxes Scene::boxes() const { return state_->objects().table().own_objects().boxes; }
 
+Verification Scene::verify(std::stop_token stop) {
+    const FloatingPointScope scope;
+    return state_->verify(stop);
+}
+
 Octants Scene::octants(std::stop_token stop) const {
     const FloatingPointScope scope;
     return state_->octants(stop);

@@ -118,7 +118,7 @@ void SceneObjects::note_move(std::uint32_t index) {
 }
 
 void SceneObjects::update_searched() {
-    if (!table_.has_slack() || !changed_) return;
+    if (!table_.has_slack() || !changed()) return;
     table_.find_outside(outside_);
     prepare(outside_.size());
     if (log_.overflowed()) return table_.enlarge_all();
@@ -135,7 +135,7 @@ void SceneObjects::add_all(std::span<const Box<Real>> boxes, std::span<const dou
         ids[i] = table_.create(boxes[i], paddings.empty() ? 0 : paddings[i], traits_at(traits, i));
         log_.note(table_, ids[i].index, false);
     }
-    changed_ |= !ids.empty();
+    is_changed_by_call_ |= !ids.empty();
 }
 
 void SceneObjects::move(std::span<const ObjectId> ids, const Boxes& boxes, bool swept) {
@@ -143,6 +143,7 @@ void SceneObjects::move(std::span<const ObjectId> ids, const Boxes& boxes, bool 
     check_ids(ids);
     if (swept) {
         reserve_more(swept_, ids.size());
+        settled_.reserve(swept_.capacity());
         if (swept_at_.size() < table_.indices()) swept_at_.resize(std::size_t(table_.indices()), ObjectTable::none);
     }
     if (!table_.has_slack()) prepare(ids.size());
@@ -159,7 +160,7 @@ void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
         if (any_swept) drop_swept(index);
         if (!table_.has_box(index, boxes[i])) {
             note_move(index);
-            changed_ = true;
+            is_changed_by_call_ = true;
         }
         table_.set_box(index, boxes[i]);  // also if equal: 0 may become -0
     }
@@ -175,7 +176,7 @@ void SceneObjects::sweep_to(std::span<const ObjectId> ids, std::span<const Box<R
         swept_.push_back({ids[i], wide(boxes[i])});
         table_.set_box(index, joined(table_.box(index), wide(boxes[i])));
     }
-    changed_ |= !ids.empty();
+    is_changed_by_call_ |= !ids.empty();
 }
 
 void SceneObjects::drop_swept(std::uint32_t index) {
@@ -207,7 +208,7 @@ void SceneObjects::remove(std::span<const ObjectId> ids) {
         drop_swept(id.index);
         table_.kill(id.index);
         removed_.push_back(id.index);
-        changed_ = true;
+        is_changed_by_call_ = true;
     }
 }
 
@@ -225,7 +226,7 @@ void SceneObjects::set_traits(std::span<const ObjectId> ids, std::span<const Tra
     for (std::size_t i = 0; i < ids.size(); ++i) {
         log_.note(table_, ids[i].index, true);
         table_.set_traits(ids[i].index, traits_at(traits, i));
-        changed_ = true;
+        is_changed_by_call_ = true;
     }
 }
 
@@ -239,7 +240,8 @@ bool SceneObjects::finish_step() {
     if (changes_ == Changes::kept) log_.clear(table_);
     for (const std::uint32_t index : removed_) table_.release(index);
     removed_.clear();
-    changed_ = false;
+    settled_.clear();
+    is_changed_by_call_ = false;
     return finish_sweeps();
 }
 
@@ -251,8 +253,8 @@ bool SceneObjects::finish_sweeps() {
         if (!table_.contains(swept.id)) continue;
         swept_at_[swept.id.index] = ObjectTable::none;
         note_move(swept.id.index);
+        settled_.push_back({swept.id.index, table_.box(swept.id.index)});
         table_.set_box(swept.id.index, swept.place);
-        changed_ = true;
     }
     swept_.clear();
     return true;

@@ -47,12 +47,20 @@ public:
     const ObjectTable& table() const { return table_; }
     const ChangeLog& log() const { return log_; }
     /// Returns whether any object was added or changed since the last step. An object that is moved to where it is does not
-    /// change.
-    bool changed() const { return changed_; }
+    /// change. A swept object changes when the step ends.
+    bool changed() const { return is_changed_by_call_ || !settled_.empty(); }
+    /// Returns whether a call has added or changed any object since the last step.
+    bool is_changed_by_call() const { return is_changed_by_call_; }
+    /// An object that was swept in the last step.
+    struct Settled {
+        std::uint32_t index;
+        Box3d swept_box;  ///< its own box in that step
+    };
+    std::span<const Settled> settled() const { return settled_; }
     /// Returns whether a change since the last step must be searched for. Without slack that is every change.
     /// Requires: update_searched() has been called.
     bool must_search() const {
-        return table_.has_slack() ? log_.overflowed() || !log_.previous_states().empty() : changed_;
+        return table_.has_slack() ? log_.overflowed() || !log_.previous_states().empty() : changed();
     }
     /// Returns the indices of objects that were removed since the last step.
     std::span<const std::uint32_t> removed() const { return removed_; }
@@ -88,7 +96,8 @@ private:
     std::vector<Swept> swept_;
     /// By object index: position in swept_, or `none`. Empty before the first sweep.
     std::vector<std::uint32_t> swept_at_;
-    bool changed_ = false;  // since the last step
+    std::vector<Settled> settled_;     // in the last step; has room for all of swept_
+    bool is_changed_by_call_ = false;  // since the last step
     CallEncoder* recorder_ = nullptr;
 };
 

@@ -18,6 +18,7 @@
 
 #include "base/tuning.hpp"
 #include "octopair/scene.hpp"
+#include "octopair/summary.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/scan_memory.hpp"
@@ -51,6 +52,8 @@ public:
     SceneQueries& queries() { return queries_; }
     /// Returns what a query of the current objects reads. Builds an octree if there is none to use.
     SceneQueries::View view(std::uint32_t groups);
+    /// Compares the pairs of the last step with a second algorithm (scene_verify.cpp).
+    Verification verify(const std::stop_token& stop);
     /// Lists the octants of the objects' own boxes (scene_octants.cpp).
     Octants octants(const std::stop_token& stop);
 

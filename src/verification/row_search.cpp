@@ -35,6 +35,7 @@ RowSearch::RowSearch(const SearchedObjects& objects, Team& team, const std::stop
       second_(objects.second != nullptr ? *objects.second : Objects{}),
       join_(objects.second != nullptr),
       margin_(objects.margin),
+      allows_(objects.allows),
       tree_(make_tree<Tree>(searched(), team, stop)) {}
 
 BoxQuery RowSearch::query_of(std::uint32_t a) const {
@@ -50,9 +51,11 @@ void RowSearch::unordered_row(std::uint32_t a, std::vector<std::uint32_t>& colum
     columns.clear();
     const BoxQuery query = query_of(a);
     std::visit([&](const auto& tree) { tree.find(query, columns); }, tree_);
+    if (allows_) std::erase_if(columns, [&](std::uint32_t b) { return !allows_(a, b); });
 }
 
 bool RowSearch::is_pair(std::uint32_t a, std::uint32_t b) const {
+    if (allows_ && !allows_(a, b)) return false;
     return is_within_reach(query_of(a), box_of(searched(), b), padding_of(searched(), b));
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <stop_token>
 #include <variant>
 #include <vector>
@@ -24,6 +25,8 @@ struct SearchedObjects {
     const Objects& first;
     const Objects* second = nullptr;  ///< the other set of a join; null: pairs within `first`
     double margin = 0;
+    /// A further condition of pairs (a, b), called by any thread; empty: none.
+    std::function<bool(std::uint32_t a, std::uint32_t b)> allows = {};
 };
 
 class RowSearch {
@@ -55,6 +58,7 @@ private:
     Objects first_, second_;
     bool join_;
     double margin_;
+    std::function<bool(std::uint32_t a, std::uint32_t b)> allows_;
     Tree tree_;
 };
 

@@ -78,10 +78,29 @@ TEST_F(DetectVerify, TheCandidatesOfFilters) {
                                {"name": "b", "shape": {"type": "sphere", "radius": 1}}]})");
     const Outcome outcome = run("detect scene.json --stage objects --verify --output p.csv");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("verified    1 candidates by a second algorithm in "), std::string::npos) << outcome.err;
+    const std::string_view line = "verified    1 candidates by a second algorithm, 1 collisions by certificates in ";
+    EXPECT_NE(outcome.err.find(line), std::string::npos) << outcome.err;
     const Outcome limited = run("detect scene.json --stage objects --verify --limit 1");
     EXPECT_EQ(limited.status, 2);
     EXPECT_EQ(limited.err, "octopair: --verify: not with --limit and filters, which end the search early\n");
+}
+
+TEST_F(DetectVerify, WithExclusionsAndMeshes) {
+    write_file(file("scene.json"), R"({"objects": [
+        {"name": "a", "shape": {"type": "sphere", "radius": 1}},
+        {"name": "b", "shape": {"type": "box", "half_extents": [1, 1, 1]}, "position": [0.5, 0, 0]},
+        {"name": "c", "shape": {"type": "mesh", "vertices": [[0,0,0],[3,0,0],[0,3,0],[0,0,3]],
+                                "triangles": [[0,2,1],[0,1,3],[0,3,2],[1,2,3]]}}]})");
+    write_file(file("rules.json"), R"({"exclude": [{"a": "a", "b": "b"}]})");
+    const Outcome outcome =
+        run("detect scene.json --stage features --verify --exclude rules.json --output p.csv --stats s.json");
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json stats = nlohmann::json::parse(content("s.json"));
+    EXPECT_EQ(stats.at("pairs"), 2);
+    EXPECT_EQ(stats.at("not_checked"), "depths and contacts of meshes");
+    const Outcome counted = run("detect scene.json --stage objects --verify --count-only --margin 0.1");
+    EXPECT_EQ(counted.status, 0) << counted.err;
+    EXPECT_EQ(counted.out, "3\n");
 }
 #endif
 

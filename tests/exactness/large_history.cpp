@@ -91,7 +91,10 @@ void LargeHistory::make_scenes(unsigned threads) {
     options.threads = threads;
     options.precision = float64_ ? Precision::float64 : Precision::float32;
     options.margin = margin_;
-    const auto make = [&](const char* name, StepChoice choice) { scenes_.push_back({name, choice, Scene(options)}); };
+    const double failing = random_.below(2) == 0 ? 0 : 0.3;
+    const auto make = [&](const char* name, StepChoice choice) {
+        scenes_.push_back({name, choice, FailingScene(options, random_.below(1'000'000), failing)});
+    };
     const bool measured = random_.below(4) == 0;
     if (!has_test_hooks) return make("measured", StepChoice::measured);
     measured ? make("measured", StepChoice::measured) : make("incremental", StepChoice::incremental);
@@ -212,7 +215,7 @@ void LargeHistory::add(std::vector<Object> added) {
         if (padded_) paddings.push_back(object.padding);
     }
     std::vector<ObjectId> ids(added.size());
-    for_each_scene(boxes, [&](Scene& scene, const Boxes& all) { scene.add({all, paddings}, ids); });
+    for_each_scene(boxes, [&](FailingScene& scene, const Boxes& all) { scene.add({all, paddings}, ids); });
     for (std::size_t i = 0; i < added.size(); ++i) {
         if (ids[i].index >= objects_.size()) objects_.resize(ids[i].index + 1);
         added[i].id = ids[i];
@@ -246,8 +249,8 @@ void LargeHistory::move_some(std::uint64_t count, bool swept, bool far) {
         object.box = swept ? joined(object.box, object.place) : object.place;
         boxes.push_back(object.place);
     }
-    for_each_scene(boxes,
-                   [&](Scene& scene, const Boxes& all) { swept ? scene.sweep(ids, all) : scene.move(ids, all); });
+    for_each_scene(
+        boxes, [&](FailingScene& scene, const Boxes& all) { swept ? scene.sweep(ids, all) : scene.move(ids, all); });
 }
 
 LargeHistory::Object& LargeHistory::any_object() {

@@ -2,6 +2,7 @@
 // (src/verification).
 //
 // Objects    Objects of a random call of a family (support/families.hpp). Both sets of a join form one scene.
+// Failures   In half of the histories calls fail before they succeed (scene/failing_scene.hpp).
 // Scenes     With test hooks, two scenes get identical calls. The first searches around changes where possible, the
 //            second searches all objects at each step. Without test hooks, a single scene chooses by measured times.
 #pragma once
@@ -15,6 +16,7 @@
 #include "exactness/case_check.hpp"
 #include "octopair/octopair.hpp"
 #include "samples/random.hpp"
+#include "scene/failing_scene.hpp"
 #include "support/cases.hpp"
 
 namespace octopair::test {
@@ -47,7 +49,7 @@ private:
     struct JudgedScene {
         std::string name;
         StepChoice choice;
-        Scene scene;
+        FailingScene scene;
     };
 
     void make_scenes(unsigned threads);

@@ -1,5 +1,5 @@
 // Tests small histories of scenes with tiny tuning against brute force: every path of scene steps and of mutable
-// octrees.
+// octrees. In half of the histories calls fail before they succeed.
 #include <gtest/gtest.h>
 
 #include <exception>
@@ -7,6 +7,7 @@
 #include "exactness/small_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
 #include "samples/random.hpp"
+#include "scene/failing_scene.hpp"
 #include "scene/history.hpp"
 #include "support/scale.hpp"
 
@@ -44,8 +45,10 @@ TEST_P(SmallHistories, AreWhatBruteForceFinds) {
         const std::string name = history_name(random);
         SCOPED_TRACE(name + ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const test::TuningScope tiny(test::tiny_tuning(seed));
-        test::History<Scene> history(
-            name, seed, [](const SceneOptions& options) { return Scene(options); }, history_size(random));
+        const auto make = [&](const SceneOptions& options) {
+            return FailingScene(options, seed, seed % 2 == 0 ? 0.3 : 0);
+        };
+        test::History<FailingScene> history(name, seed, make, history_size(random));
         try {
             history.run();
         } catch (const std::exception& error) {

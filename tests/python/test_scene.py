@@ -1,5 +1,6 @@
 """Scenes: events and queries equal to brute force in NumPy, for local and remote scenes."""
 import itertools
+import signal
 
 import numpy as np
 import pytest
@@ -77,10 +78,56 @@ def test_equal_to_brute_force(make_scene, dtype, seed):
         assert np.array_equal(result.began, difference(now, before))
         assert np.array_equal(result.ended, difference(before, now))
         assert result.pairs == len(now) and result.persisting == len(scene.persisting())
+        if isinstance(scene, op.Scene):
+            scene.verify()
         assert len(scene) == len(alive) and scene.contains(alive).all()
         assert np.array_equal(scene.ids(np.unique(now)), alive[np.isin(alive["index"], np.unique(now))][
             np.argsort(alive[np.isin(alive["index"], np.unique(now))]["index"])])
         before = now
+
+
+class Interrupted(Exception):
+    pass
+
+
+def step_unless_interrupted(scene, seconds):
+    """Makes a step that a signal handler interrupts after some seconds. Returns None if the handler raised."""
+    try:
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        try:
+            return scene.step()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+    except Interrupted:
+        return None
+
+
+def test_an_interrupted_step_happens_or_not(make_scene):
+    def interrupt(*_):
+        raise Interrupted
+
+    rng = np.random.default_rng(1)
+    boxes = random_boxes(6000, size=0.05)  # more than the calls that are never interrupted
+    scene = make_scene()
+    ids = scene.add(boxes)
+    before = np.empty((0, 2), np.uint32)
+    former = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        for step in range(40):
+            moved = np.arange(len(boxes)) if step % 4 == 0 else rng.choice(len(boxes), 30, replace=False)
+            boxes[moved] = random_boxes(len(moved), seed=step, size=0.05)
+            scene.move(ids[moved], boxes[moved])
+            result = step_unless_interrupted(scene, 1e-6 + 0.004 * rng.random())
+            if result is None and np.array_equal(scene.pairs(), before):
+                result = scene.step()
+            now = op.find_pairs(boxes)
+            assert np.array_equal(scene.pairs(), now)
+            if result is not None:
+                assert np.array_equal(result.began, difference(now, before))
+                assert np.array_equal(result.ended, difference(before, now))
+            before = now
+    finally:
+        signal.signal(signal.SIGALRM, former)
 
 
 def test_sweep_and_traits(make_scene):
@@ -171,6 +218,20 @@ def test_refuses_wrong_queries(call):
     scene = op.Scene()
     with pytest.raises(op.Error):
         call(scene)
+
+
+def test_verifies_directly_after_a_step():
+    scene = op.Scene()
+    with pytest.raises(op.UsageError):
+        scene.verify()
+    ids = scene.add(random_boxes(300))
+    scene.step()
+    scene.verify()
+    scene.sweep(ids[:5], random_boxes(5, seed=2))
+    with pytest.raises(op.UsageError):
+        scene.verify()
+    scene.step()
+    scene.verify()
 
 
 def test_recording_and_slack(tmp_path):

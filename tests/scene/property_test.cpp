@@ -1,8 +1,12 @@
 // Tests scenes on random histories of additions, moves, sweeps, removals and new traits. Brute force checks each step
-// and the queries between steps.
+// and the queries between steps. In half of the histories calls fail before they succeed. Some histories are recorded and replayed.
 #include <gtest/gtest.h>
 
+#include "io/temporary.hpp"
+#include "scene/failing_scene.hpp"
 #include "scene/history.hpp"
+#include "scene/recording/replay.hpp"
+#include "scene/recording_source.hpp"
 #include "support/cases.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
@@ -12,22 +16,48 @@ namespace {
 
 constexpr std::uint64_t histories_per_kind = test::scaled(30, 2);
 
-class SceneProperty : public ::testing::TestWithParam<std::string> {};
+class SceneProperty : public ::testing::TestWithParam<std::string> {
+protected:
+    /// Runs a history, and adds its numbers of steps and failures. `failing`: as in FailingScene. `recording`: as in SceneOptions.
+    void run(std::uint64_t seed, double failing, const std::string& recording) {
+        const auto make = [&](SceneOptions options) {
+            options.recording = recording;
+            return FailingScene(options, seed, failing);
+        };
+        test::History<FailingScene> history(GetParam(), seed, make);
+        history.run();
+        full_ += history.model().full();
+        partial_ += history.model().partial();
+        const FailingScene::Failures& failures = history.scene().failures();
+        failures_.allocations += failures.allocations;
+        failures_.refusals += failures.refusals;
+        failures_.stops += failures.stops;
+    }
+
+    int full_ = 0, partial_ = 0;
+    FailingScene::Failures failures_;
+};
 
 TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
-    int full = 0, partial = 0;
+    const TemporaryDirectory directory;
     const std::uint64_t count = test::case_count(histories_per_kind);
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        test::History<Scene> history(GetParam(), seed, [](const SceneOptions& options) { return Scene(options); });
-        history.run();
+        const std::string recording = seed % 6 < 2 ? directory.file("r.rec") : "";
+        run(seed, seed % 2 == 0 ? 0.3 : 0, recording);
         if (HasFatalFailure()) return;
-        full += history.model().full();
-        partial += history.model().partial();
+        if (recording.empty()) continue;
+        const std::string bytes = read_file(recording);
+        RecordingReader reader(source_of(bytes));
+        EXPECT_EQ(replay(reader, {1, true}).steps, std::uint64_t(HistorySize().steps));
     }
-    EXPECT_GT(full, 0);
-    EXPECT_GT(partial, 0);
+    EXPECT_GT(full_, 0);
+    EXPECT_GT(partial_, 0);
+    if (count < 10) return;
+    EXPECT_GT(failures_.allocations, 0U);
+    EXPECT_GT(failures_.refusals, 0U);
+    EXPECT_GT(failures_.stops, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SceneProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);

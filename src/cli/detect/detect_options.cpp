@@ -90,8 +90,9 @@ void add_outcome(Command& command, DetectRequest& request) {
         .type_name("TYPE");
     add_order_options(command, request, "write only the first N pairs (with --events: rows)");
     command.add_flag("--count-only", request.count_only, "print only the number of pairs").excludes(output);
-    command.add_flag("--verify", request.verify,
-                     "check the pairs of boxes with a second algorithm; exit status 6 if they differ");
+    command.add_flag(
+        "--verify", request.verify,
+        "check the result without the octree, and collisions by certificates; exit status 6 if it is wrong");
     command.add_flag("--fail-on-collision", request.fail_on_collision, "exit with status 1 if any pair is found");
     command.add_option("--stats", request.stats, "write statistics of the run as JSON").type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");

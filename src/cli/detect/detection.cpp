@@ -155,8 +155,13 @@ void DetectReport::add_search(const Summary& search) {
 
 void DetectReport::add(const Verification& verification) {
     verified = verification.done;
-    if (not_checked.size() < verification.not_checked.size()) not_checked = verification.not_checked;
+    add_not_checked(verification.not_checked);
     seconds.verify += verification.seconds;
+}
+
+void DetectReport::add_not_checked(std::string_view what) {
+    if (what.empty() || not_checked.find(what) != std::string::npos) return;
+    not_checked += (not_checked.empty() ? "" : ", ") + std::string(what);
 }
 
 void DetectReport::add(const Summary& summary, double written) {

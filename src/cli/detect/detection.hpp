@@ -29,7 +29,7 @@ struct DetectRequest {
     bool count_only = false;
     bool fail_on_collision = false;
     bool events = false;
-    bool verify = false;  ///< the pairs of boxes, by a second algorithm
+    bool verify = false;  ///< the pairs of boxes, by a second algorithm, and collisions by certificates
     PipelineRequest pipeline;
     bool wide_indices = false;  ///< uint64 in .npy files
     EngineChoice engine;
@@ -58,7 +58,8 @@ struct DetectReport {
     std::uint64_t pairs = 0;  ///< what came out, of all frames
     bool truncated = false;
     bool verified = false;                                       ///< the pairs of boxes in each frame so far
-    std::string_view not_checked;                                ///< in one of the frames at least (Verification)
+    bool collisions_verified = false;                            ///< also the collisions, by certificates
+    std::string not_checked;                                     ///< in one of the frames at least, for users
     std::uint64_t candidates = 0;                                ///< pairs of boxes, as far as they were looked for
     std::vector<FilterCounts> filters;                           ///< of all frames
     std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
@@ -77,6 +78,8 @@ struct DetectReport {
     /// What a frame's call did, beside `written` seconds that went by in writing.
     void add(const Summary& summary, double written);
     void add(const PipelineSummary& summary, double written);
+    /// Adds a property that a check did not cover. Empty: none.
+    void add_not_checked(std::string_view what);
 
 private:
     void add_search(const Summary& search);

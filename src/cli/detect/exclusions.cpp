@@ -10,7 +10,6 @@
 
 #include "cli/input/shaped_set.hpp"
 #include "io/files/failure.hpp"
-#include "io/json/exclusion_rules.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 
@@ -42,14 +41,12 @@ public:
     Exclusions(Pipeline& pipeline, const DetectRequest& request, const SetPair& sets)
         : pipeline_(pipeline), request_(request), sets_(sets) {}
 
-    void add() const {
-        const std::string& file = request_.pipeline.exclude;
-        io::ExclusionRules rules;
-        if (!file.empty()) rules = io::read_exclusion_rules(file);
+    bool add(const io::ExclusionRules& rules) {
         if (stage_of(request_) != Stage::pairs) add_groups();
         if (request_.pipeline.same_parent.value_or(rules.same_parent)) add_parents();
         if (!rules.ignored_pairs.empty()) add_ignored(rules);
         if (!rules.exclude.empty()) add_rules(rules.exclude);
+        return any_;
     }
 
 private:
@@ -57,22 +54,22 @@ private:
     static Names names(const InputSet& set) { return set.scene.names; }
 
     // Requires a stage beyond Stage::pairs: then all objects have shapes.
-    void add_groups() const {
+    void add_groups() {
         ShapedSet& first = *sets_.first.shaped;
         ShapedSet* const second = join() ? sets_.second->shaped.get() : nullptr;
         if (!first.has_groups() && (second == nullptr || !second->has_groups())) return;
-        pipeline_.add(make_group_filter(first.group_masks(),
-                                        second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
+        add_filter(make_group_filter(first.group_masks(),
+                                     second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
     }
 
     // In a join, the objects of a pair are in different files and cannot have the same parent.
-    void add_parents() const {
+    void add_parents() {
         if (!join() && sets_.first.shaped != nullptr) {
-            pipeline_.add(make_parent_filter(sets_.first.shaped->parents()));
+            add_filter(make_parent_filter(sets_.first.shaped->parents()));
         }
     }
 
-    void add_ignored(const io::ExclusionRules& rules) const {
+    void add_ignored(const io::ExclusionRules& rules) {
         check_names();
         const NameTable first(names(sets_.first));
         const NameTable second(join() ? names(*sets_.second) : Names());
@@ -92,17 +89,17 @@ private:
             ignore(first.of(x), join() ? second.of(y) : first.of(y));
             if (join()) ignore(first.of(y), second.of(x));
         }
-        pipeline_.add(make_ignored_pairs_filter(std::move(ignored), join()));
+        add_filter(make_ignored_pairs_filter(std::move(ignored), join()));
     }
 
-    void add_rules(const std::vector<ColumnRule>& rules) const {
+    void add_rules(const std::vector<ColumnRule>& rules) {
         for (std::size_t i = 0; i < rules.size(); ++i) {
             check_columns(rules[i].a, fmt::format("exclude[{}]: a", i));
             check_columns(rules[i].b, fmt::format("exclude[{}]: b", i));
         }
         const TextColumns first = columns_of(sets_.first);
         const std::optional<TextColumns> second = join() ? std::optional(columns_of(*sets_.second)) : std::nullopt;
-        pipeline_.add(make_column_filter(first, rules, second ? &*second : nullptr));
+        add_filter(make_column_filter(first, rules, second ? &*second : nullptr));
     }
 
     static TextColumns columns_of(const InputSet& set) {
@@ -135,15 +132,27 @@ private:
         }
     }
 
+    void add_filter(std::unique_ptr<Filter> filter) {
+        pipeline_.add(std::move(filter));
+        any_ = true;
+    }
+
     Pipeline& pipeline_;
+    bool any_ = false;
     const DetectRequest& request_;
     const SetPair& sets_;
 };
 
 }  // namespace
 
-void add_exclusions(Pipeline& pipeline, const DetectRequest& request, const SetPair& sets) {
-    Exclusions(pipeline, request, sets).add();
+io::ExclusionRules read_exclusions(const DetectRequest& request) {
+    const std::string& file = request.pipeline.exclude;
+    return file.empty() ? io::ExclusionRules() : io::read_exclusion_rules(file);
+}
+
+bool add_exclusions(Pipeline& pipeline, const io::ExclusionRules& rules, const DetectRequest& request,
+                    const SetPair& sets) {
+    return Exclusions(pipeline, request, sets).add(rules);
 }
 
 }  // namespace octopair::cli

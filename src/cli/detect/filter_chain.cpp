@@ -1,5 +1,7 @@
 #include "cli/detect/filter_chain.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "cli/detect/exclusions.hpp"
@@ -14,27 +16,50 @@ namespace {
 class RequestedFilters final : public FilterChain {
 public:
     RequestedFilters(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
-        : sets_(sets), stop_(stop), pipeline_(local_threads(request.engine)) {
+        : sets_(sets),
+          stop_(stop),
+          margin_(request.margin),
+          pipeline_(local_threads(request.engine)),
+          exclusions_(local_threads(request.engine)) {
         if (sets.first.scene.triangles) {
             add_triangles(request);
             return;
         }
-        add_exclusions(pipeline_, request, sets);
+        const io::ExclusionRules rules = read_exclusions(request);
+        add_exclusions(pipeline_, rules, request, sets);
+        if (request.verify) has_exclusions_ = add_exclusions(exclusions_, rules, request, sets);
         if (stage_of(request) != Stage::pairs) add_exact(request);
     }
 
     PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                         const Options& options) override {
-        const Input input(sets_.first.frame(frame),
-                          sets_.second != nullptr ? std::optional(sets_.second->frame(frame)) : std::nullopt);
-        return pipeline_.run(engine, input, sink, options, stop_);
+        return pipeline_.run(engine, input_of(frame), sink, options, stop_);
     }
 
     PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) override {
         return pipeline_.filter(pairs, sink, options, stop_);
     }
 
+    std::vector<Pair> excluded(Engine& engine, std::uint64_t frame) override {
+        std::vector<Pair> excluded, kept;
+        if (!has_exclusions_) return excluded;
+        PairList all;
+        engine.find_pairs(input_of(frame), all, {.margin = margin_}, stop_);
+        const CollisionSink keep = [&](const Batch& batch) {
+            kept.insert(kept.end(), batch.pairs().begin(), batch.pairs().end());
+        };
+        exclusions_.filter(all, keep, {}, stop_);
+        for (const std::span<const Pair> chunk : all.chunks())
+            std::ranges::set_difference(chunk, kept, std::back_inserter(excluded));
+        return excluded;
+    }
+
 private:
+    Input input_of(std::uint64_t frame) const {
+        return {sets_.first.frame(frame),
+                sets_.second != nullptr ? std::optional(sets_.second->frame(frame)) : std::nullopt};
+    }
+
     void add_exact(const DetectRequest& request) {
         ExactOptions options{.margin = request.margin, .tolerance = tolerance_of(request, sets_)};
         options.duplicate_tolerance = request.pipeline.duplicate_tolerance;
@@ -71,7 +96,10 @@ private:
 
     SetPair sets_;
     std::stop_token stop_;
+    double margin_;
     Pipeline pipeline_;
+    Pipeline exclusions_;  // the exclusion rules alone, with --verify
+    bool has_exclusions_ = false;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "cli/detect/detection.hpp"
 #include "cli/input/input_set.hpp"
@@ -26,6 +27,8 @@ public:
                                 const Options& options) = 0;
     /// Filters pairs that were found before, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) = 0;
+    /// Finds the pairs of a frame that exclusion rules leave out, ascending. Requires: the request has --verify.
+    virtual std::vector<Pair> excluded(Engine& engine, std::uint64_t frame) = 0;
 };
 
 /// Makes the filters. Borrows from the sets.

@@ -87,6 +87,8 @@ private:
         summary.search = found;
         summary.seconds += found.seconds + found.verification.seconds;
         run_.report.add(summary, 0);
+        if (run_.request.verify && stage_of(run_.request) != Stage::pairs)
+            run_.report.add_not_checked("collisions on ranks");
         if (output_ == nullptr) return;
         run_.progress.clear();
         const Timed timed(run_.report.seconds.write);

@@ -5,6 +5,9 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/filter_chain.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/detect/collision_check.hpp"
+#endif
 #include "cli/detect/frame_search.hpp"
 #include "cli/output/found_writer.hpp"
 
@@ -51,8 +54,7 @@ private:
         const double written_before = run_.report.seconds.write;
         const auto written = [&] { return run_.report.seconds.write - written_before; };
         if (filters_ != nullptr) {
-            const PipelineSummary summary = filters_->run(*engine_, frame, collision_sink(), options);
-            run_.report.add(summary, written());
+            find_collisions(frame, options);
         } else {
             const Input input(run_.inputs.first.frame(frame),
                               run_.join() ? std::optional(run_.inputs.second.frame(frame)) : std::nullopt);
@@ -61,11 +63,36 @@ private:
         }
     }
 
-    /// Returns an empty sink, which counts, if nothing is written.
-    CollisionSink collision_sink() {
-        if (writer_ == nullptr) return {};
-        return [&](const Batch& batch) { timed_write([&] { writer_->write(batch.pairs(), batch.findings()); }); };
+#ifdef OCTOPAIR_WITH_PIPELINE
+    void find_collisions(std::uint64_t frame, const Options& options) {
+        const double written_before = run_.report.seconds.write;
+        std::optional<CollisionCheck> check;
+        const InputSet* const second = run_.join() ? &run_.inputs.second : nullptr;
+        const bool has_shapes = run_.inputs.first.shaped != nullptr && stage_of(run_.request) != Stage::pairs;
+        if (run_.request.verify && has_shapes)
+            check.emplace(run_.request, SetPair{run_.inputs.first, second}, frame, run_.stop);
+        const CollisionSink sink = [&](const Batch& batch) {
+            if (check) check->take(batch);
+            if (writer_ == nullptr) return;
+            timed_write([&] { writer_->write(batch.pairs(), batch.findings()); });
+        };
+        const bool counts_only = writer_ == nullptr && !check;
+        const PipelineSummary summary = filters_->run(*engine_, frame, counts_only ? CollisionSink() : sink, options);
+        run_.report.add(summary, run_.report.seconds.write - written_before);
+        if (run_.request.verify && !check && stage_of(run_.request) != Stage::pairs)
+            run_.report.add_not_checked("collisions of triangles");
+        if (!check) return;
+        const Timed timed(run_.report.seconds.verify);
+        run_.progress.show("verifying", 0);
+        const StageCheck::Result result = check->finish(filters_->excluded(*engine_, frame));
+        run_.report.collisions_verified = result.judged;
+        for (const std::string& what : result.not_checked) run_.report.add_not_checked(what);
     }
+#else
+    void find_collisions(std::uint64_t, const Options&) {
+    }  // a program without filters refuses the options that need them
+#endif
+
     PairSink pair_sink() {
         if (writer_ == nullptr) return {};
         return [&](std::span<const Pair> pairs) { timed_write([&] { writer_->write(pairs, {}); }); };

@@ -76,8 +76,10 @@ std::string time_text(const DetectReport& report) {
 /// Returns the line of --verify: what was checked, and what was not.
 std::string verified_text(const DetectReport& report) {
     if (!report.verified) return {};
-    std::string text = fmt::format("verified    {} {} by a second algorithm in {}", grouped(report.candidates),
-                                   report.filters.empty() ? "pairs" : "candidates", duration(report.seconds.verify));
+    std::string text = fmt::format("verified    {} {} by a second algorithm", grouped(report.candidates),
+                                   report.filters.empty() ? "pairs" : "candidates");
+    if (report.collisions_verified) text += fmt::format(", {} collisions by certificates", grouped(report.pairs));
+    text += fmt::format(" in {}", duration(report.seconds.verify));
     if (!report.not_checked.empty()) text += fmt::format(" (not checked: {})", report.not_checked);
     return text + '\n';
 }
