@@ -246,7 +246,7 @@ def print_stack(used):
     order = list(LAYERS)
     for layer in reversed([layer for layer in order if layer in used]):
         names = sorted(used[layer], key=lambda n: (n[0] == "<", order.index(n) if n in order else 0, n))
-        print(f"    {layer:<16} {LAYERS[layer][0]:<42} uses {' '.join(names) or '-'}")
+        print(f"    {layer:<19} {LAYERS[layer][0]:<42} uses {' '.join(names) or '-'}")
 
 
 def main():
