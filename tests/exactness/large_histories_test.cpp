@@ -25,8 +25,9 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     const test::TuningScope tuning(default_tuning);  // restores the tuning that the histories change
 #endif
     const auto families = test::family_names();
-    // By default a fifth of the number of large scenes. The environment can set another number of cases.
-    const std::uint64_t count = test::case_count(test::scene_range(test::SceneSize::large, 20).size() / 5);
+    // A fifth of the number of large scenes; in long runs as many. The environment can set another number of cases.
+    const std::uint64_t scenes = test::scene_range(test::SceneSize::large, 20).size();
+    const std::uint64_t count = test::case_count(scenes < 1000 ? scenes / 5 : scenes);
     const std::uint64_t max_tried = 4 * count;
     std::uint64_t done = 0, full_steps = 0, partial_steps = 0;
     for (std::uint64_t i = 0; i < max_tried && done < count; ++i) {

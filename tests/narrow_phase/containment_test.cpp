@@ -154,8 +154,11 @@ double largest(const std::function<double(double, double)>& function) {
         }
     }
     std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.value > b.value; });
+    // A shape whose points depend on one angle alone has each place many times.
+    const auto same = [](const Place& a, const Place& b) { return a.value == b.value; };
+    places.erase(std::unique(places.begin(), places.end(), same), places.end());
     double best = 0;
-    for (std::size_t i = 0; i < 24; ++i) {
+    for (std::size_t i = 0; i < std::min<std::size_t>(24, places.size()); ++i) {
         Place place = places[i];
         for (double step = 0.06; step > 1e-10;) {
             const Place before = place;

@@ -158,7 +158,8 @@ bool expand(std::vector<Face>& faces, const Vector& point) {
 /// As the public function. `around` gets the corners of a tetrahedron around the origin, if the search ends with one.
 DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real far_enough,
                               std::vector<Difference>& around) {
-    Weighted nearest{{farthest_difference(first, second, {-1, 0, 0})}, {1}};
+    // Not along an axis, because symmetric bodies would yield flat simplices.
+    Weighted nearest{{farthest_difference(first, second, {-0.48L, 0.6L, 0.64L})}, {1}};
     DistanceBounds bounds;
     bounds.upper = std::numeric_limits<Real>::infinity();
     for (int step = 0; step < max_steps; ++step) {
