@@ -106,7 +106,7 @@ TEST_P(Certificates, AgreeWithTheNarrowPhase) {
                 return JudgedObject{scene.geometries[scene.geometry[k]], scene.poses[k]};
             };
             const StageRules rules{.margin = options.margin, .features = true};
-            const PairVerdict verdict = judge_pair(object(0), object(1), rules, finding);
+            const PairVerdict verdict = judge_pair({object(0), object(1)}, rules, finding);
             ASSERT_EQ(verdict.fault, "") << "ratio " << ratio << ", scale " << scale;
             const bool is_duplicate = finding != nullptr && finding->collision_class == CollisionClass::duplicate;
             EXPECT_EQ(verdict.not_checked != nullptr, is_duplicate);

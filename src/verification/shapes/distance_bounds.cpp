@@ -155,8 +155,13 @@ bool expand(std::vector<Face>& faces, const Vector& point) {
     return !outline.empty();
 }
 
+/// When a search for bounds ends: they agree to `accuracy`, or the lower one is beyond `enough`.
+struct Goal {
+    Real accuracy, enough;
+};
+
 /// As the public function. `around` gets the corners of a tetrahedron around the origin, if the search ends with one.
-DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real far_enough,
+DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, const Goal& goal,
                               std::vector<Difference>& around) {
     // Not along an axis, because symmetric bodies would yield flat simplices.
     Weighted nearest{{farthest_difference(first, second, {-0.48L, 0.6L, 0.64L})}, {1}};
@@ -169,11 +174,11 @@ DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second,
         if (distance >= bounds.upper) break;  // rounding ends the progress
         bounds.upper = distance;
         bounds.points = points;
-        if (distance <= accuracy) break;
+        if (distance <= goal.accuracy) break;
         const Difference next = farthest_difference(first, second, -v);
         const Real width = dot(next.point(), v) / distance;
         bounds.lower = std::max(bounds.lower, width);
-        if (bounds.upper - bounds.lower <= accuracy || bounds.lower > far_enough) break;
+        if (bounds.upper - bounds.lower <= goal.accuracy || bounds.lower > goal.enough) break;
         std::vector<Difference> corners = nearest.corners;
         corners.push_back(next);
         nearest = nearest_of_simplex(corners);
@@ -195,7 +200,7 @@ Real gap_along(const ConvexBody& first, const ConvexBody& second, const Vector& 
 
 DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real far_enough) {
     std::vector<Difference> around;
-    return bound_distance(first, second, accuracy, far_enough, around);
+    return bound_distance(first, second, {accuracy, far_enough}, around);
 }
 
 namespace {
@@ -203,7 +208,7 @@ namespace {
 DepthBounds bound_depth_once(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real deep_enough) {
     DepthBounds bounds{0, std::numeric_limits<Real>::infinity()};
     std::vector<Difference> around;
-    (void)bound_distance(first, second, 0, 0, around);
+    (void)bound_distance(first, second, {0, 0}, around);
     if (around.empty()) return bounds;
     std::vector<Face> faces = faces_of(around);
     for (int step = 0; step < max_expansions && !faces.empty(); ++step) {

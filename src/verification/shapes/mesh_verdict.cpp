@@ -19,14 +19,7 @@ namespace {
 /// Maximum number of pairs of near triangles that are compared for a pair of objects.
 constexpr std::uint64_t max_near_triangles = 200'000;
 
-/// The part of the surface of an object that is near another object.
-struct Surface {
-    std::vector<Triangle> triangles;  ///< none if the object is a convex solid
-    std::vector<ConvexBody> bodies;   ///< the triangles, or the solid
-    std::vector<Box3d> boxes;         ///< of the bodies
-};
-
-/// Returns a float64 box that contains the points of `bounds`, each a point and the opposite corner.
+/// Returns a float64 box that contains two opposite corners.
 Box3d box_around(const Vector& low, const Vector& high) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto down = [](Real x) { return std::nextafter(double(x), -infinity); };
@@ -59,36 +52,6 @@ Box3d joined(const std::vector<Box3d>& boxes) {
     return all;
 }
 
-/// Returns all boxes of an object: of its triangles, or of the solid.
-std::vector<Box3d> boxes_of(const JudgedObject& object, const std::vector<Triangle>& triangles) {
-    if (triangles.empty()) return {box_of(ConvexBody(object.geometry.shape(), object.pose))};
-    std::vector<Box3d> boxes;
-    for (const Triangle& triangle : triangles) boxes.push_back(box_of(triangle));
-    return boxes;
-}
-
-/// Returns the part of the surface that is at most `reach` away from a box.
-Surface surface_near(const Box3d& place, const JudgedObject& object, const std::vector<Triangle>& triangles,
-                     const std::vector<Box3d>& boxes, double reach) {
-    Surface surface;
-    if (triangles.empty()) {
-        surface.bodies.emplace_back(object.geometry.shape(), object.pose);
-        surface.boxes = boxes;
-        return surface;
-    }
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        bool is_near = true;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            is_near &= boxes[i].min[axis] <= place.max[axis] + reach && place.min[axis] <= boxes[i].max[axis] + reach;
-        }
-        if (!is_near) continue;
-        surface.triangles.push_back(triangles[i]);
-        surface.bodies.emplace_back(std::vector<Vector>(triangles[i].begin(), triangles[i].end()));
-        surface.boxes.push_back(boxes[i]);
-    }
-    return surface;
-}
-
 /// Returns the sign of the volume of the tetrahedron a, b, c, d; 0 if rounding may have changed it.
 int sign_of_volume(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
     const Vector u = b - a, v = c - a, w = d - a;
@@ -113,6 +76,58 @@ bool cross_each_other(const Triangle& a, const Triangle& b) {
     return false;
 }
 
+/// One of the two objects.
+struct Side {
+    explicit Side(const JudgedObject& judged) : object(judged), triangles(triangles_of(judged)) {
+        for (const Triangle& triangle : triangles) boxes.push_back(box_of(triangle));
+        if (is_solid()) boxes.push_back(box_of(solid()));
+    }
+    /// Returns whether the object is a convex solid, not a mesh.
+    bool is_solid() const { return triangles.empty(); }
+    ConvexBody solid() const { return {object.geometry.shape(), object.pose}; }
+    /// Returns one point of each connected part.
+    std::vector<Vector> points_of_parts() const {
+        return is_solid() ? std::vector{solid().support({1, 0, 0})} : certificate::points_of_parts(triangles);
+    }
+    /// Returns where the other object is. Requires: the surfaces do not meet.
+    Place place_of(const Side& other) const {
+        if (is_solid()) return {false, true, true};  // otherwise a triangle would be in the solid
+        return place_in(triangles, other.points_of_parts());
+    }
+
+    const JudgedObject& object;
+    std::vector<Triangle> triangles;
+    std::vector<Box3d> boxes;  ///< of the triangles, or of the solid
+};
+
+/// The part of the surface of an object that is near another object.
+struct Surface {
+    /// Takes the part that is at most `reach` away from the boxes of `other`.
+    Surface(const Side& side, const Side& other, double reach) {
+        if (side.is_solid()) {
+            bodies.push_back(side.solid());
+            boxes = side.boxes;
+            return;
+        }
+        const Box3d place = joined(other.boxes);
+        for (std::size_t i = 0; i < side.triangles.size(); ++i) {
+            const Box3d& box = side.boxes[i];
+            bool is_near = true;
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                is_near &= box.min[axis] <= place.max[axis] + reach && place.min[axis] <= box.max[axis] + reach;
+            if (!is_near) continue;
+            const Triangle& triangle = side.triangles[i];
+            triangles.push_back(triangle);
+            bodies.emplace_back(std::vector<Vector>(triangle.begin(), triangle.end()));
+            boxes.push_back(box);
+        }
+    }
+
+    std::vector<Triangle> triangles;  ///< none of a solid
+    std::vector<ConvexBody> bodies;   ///< the triangles, or the solid
+    std::vector<Box3d> boxes;         ///< of the bodies
+};
+
 /// Bounds on the distance of two surfaces.
 struct SurfaceBounds {
     Real lower = std::numeric_limits<Real>::infinity(), upper = std::numeric_limits<Real>::infinity();
@@ -120,79 +135,110 @@ struct SurfaceBounds {
     bool complete = true;  ///< false: there were too many near triangles
 };
 
-/// Returns whether two bodies of surfaces certainly meet. Requires: their distance is 0 within the accuracy.
-bool certainly_meet(const Surface& a, std::size_t i, const Surface& b, std::size_t k, Real accuracy) {
-    if (!a.triangles.empty() && !b.triangles.empty()) return cross_each_other(a.triangles[i], b.triangles[k]);
-    return bound_depth(a.bodies[i], b.bodies[k], accuracy, accuracy).lower > accuracy;
-}
+class MeshVerdict {
+public:
+    MeshVerdict(const JudgedPair& pair, const Decision& decision, const std::stop_token& stop)
+        : pair_(pair), first_(pair.a), second_(pair.b), decision_(decision), stop_(stop) {}
 
-SurfaceBounds bound_surfaces(const Surface& a, const Surface& b, Real reach, const Decision::Accuracy& accuracy,
-                             const std::stop_token& stop) {
-    SurfaceBounds bounds;
-    if (a.bodies.empty() || b.bodies.empty()) return bounds;
-    Team alone(1);
-    const Objects first{std::span<const Box3d>(a.boxes)}, second{std::span<const Box3d>(b.boxes)};
-    const RowSearch near({first, &second, double(reach)}, alone, stop);
-    std::uint64_t compared = 0;
-    std::vector<std::uint32_t> columns;
-    for (std::uint32_t i = 0; i < near.rows(); ++i) {
-        throw_if_stopped(stop);
-        near.unordered_row(i, columns);
-        compared += columns.size();
-        bounds.complete = compared <= max_near_triangles;
-        if (!bounds.complete) return bounds;
-        for (const std::uint32_t k : columns) {
-            const Real far_enough = std::min(bounds.upper, reach);
-            const DistanceBounds two = bound_distance(a.bodies[i], b.bodies[k], accuracy.place / 16, far_enough);
-            bounds.lower = std::min(bounds.lower, two.lower);
-            bounds.upper = std::min(bounds.upper, two.upper);
-            bounds.meet = bounds.meet || (two.upper <= accuracy.place && certainly_meet(a, i, b, k, accuracy.length));
+    PairVerdict judge() const {
+        const Real distance = decision_.finding != nullptr ? Real(decision_.finding->distance) : Real(0);
+        if (!std::isfinite(distance)) return {"its distance is not finite"};
+        const SurfaceBounds bounds = bound_surfaces(std::max(decision_.reach, distance) + decision_.accuracy.length);
+        if (!bounds.complete) return {"", "pairs of meshes with more than 200,000 pairs of near triangles"};
+        if (bounds.lower > decision_.accuracy.place) return {judge_apart(bounds), not_checked()};
+        if (bounds.meet) return {judge_meeting(), not_checked()};
+        const bool is_distance_known = decision_.found() == CollisionClass::clearance;
+        return {is_distance_known ? judge_distance(decision_, bounds.lower, bounds.upper) : "",
+                "meshes that touch within rounding"};
+    }
+
+private:
+    const char* not_checked() const {
+        return decision_.says_meet() && decision_.rules.features ? "depths and contacts of meshes" : nullptr;
+    }
+    bool may_be_shallow() const { return decision_.was_dropped() && decision_.rules.min_depth; }
+    bool is_touching() const { return decision_.found() == CollisionClass::touching && decision_.rules.tolerance == 0; }
+
+    SurfaceBounds bound_surfaces(Real reach) const {
+        SurfaceBounds bounds;
+        const Surface a(first_, second_, double(reach)), b(second_, first_, double(reach));
+        if (a.bodies.empty() || b.bodies.empty()) return bounds;
+        Team alone(1);
+        const Objects first{std::span<const Box3d>(a.boxes)}, second{std::span<const Box3d>(b.boxes)};
+        const RowSearch near({first, &second, double(reach)}, alone, stop_);
+        std::uint64_t compared = 0;
+        std::vector<std::uint32_t> columns;
+        for (std::uint32_t i = 0; i < near.rows(); ++i) {
+            throw_if_stopped(stop_);
+            near.unordered_row(i, columns);
+            compared += columns.size();
+            bounds.complete = compared <= max_near_triangles;
+            if (!bounds.complete) return bounds;
+            for (const std::uint32_t k : columns) {
+                const DistanceBounds two = bound_distance(a.bodies[i], b.bodies[k], decision_.accuracy.place / 16,
+                                                          std::min(bounds.upper, reach));
+                bounds.lower = std::min(bounds.lower, two.lower);
+                bounds.upper = std::min(bounds.upper, two.upper);
+                if (bounds.meet || two.upper > decision_.accuracy.place) continue;
+                const bool has_solid = first_.is_solid() || second_.is_solid();
+                bounds.meet =
+                    has_solid ? overlap(a.bodies[i], b.bodies[k]) : cross_each_other(a.triangles[i], b.triangles[k]);
+            }
         }
+        return bounds;
     }
-    return bounds;
-}
 
-/// Judges objects whose surfaces are certainly apart.
-std::string judge_apart(const JudgedObject& a, const JudgedObject& b, const std::vector<Triangle>& first,
-                        const std::vector<Triangle>& second, const SurfaceBounds& bounds, const Decision& decision) {
-    const Vector x{1, 0, 0};
-    const auto points_of = [&](const JudgedObject& object, const std::vector<Triangle>& mesh) {
-        if (!mesh.empty()) return points_of_parts(mesh);
-        return std::vector{ConvexBody(object.geometry.shape(), object.pose).support(x)};
-    };
-    // No triangle of a mesh is in a solid.
-    const Place outside{false, true, true};
-    const Place a_in_b = second.empty() ? outside : place_in(second, points_of(a, first));
-    const Place b_in_a = first.empty() ? outside : place_in(first, points_of(b, second));
-    const bool are_apart = a_in_b.all_outside && b_in_a.all_outside;
-    if (decision.says_meet()) {
-        const bool not_contained = a_in_b.any_outside && b_in_a.any_outside;
-        if (decision.found() == CollisionClass::contained && not_contained)
-            return "it is contained, but a part of each object is outside the other one";
-        if (are_apart)
-            return "the objects do not meet: their surfaces are at least " + text_of(bounds.lower) + " apart";
-        const bool is_touching = decision.found() == CollisionClass::touching && decision.rules.tolerance == 0;
-        return is_touching ? "it is touching, but the surfaces are at least " + text_of(bounds.lower) + " apart" : "";
+    /// Returns whether a triangle and a solid certainly overlap.
+    bool overlap(const ConvexBody& a, const ConvexBody& b) const {
+        const Real accuracy = decision_.accuracy.length;
+        return bound_depth(a, b, accuracy, accuracy).lower > accuracy;
     }
-    const bool may_be_shallow = decision.was_dropped() && decision.rules.min_depth;
-    if ((a_in_b.any_inside || b_in_a.any_inside) && !may_be_shallow)
-        return "a part of one object is inside the other one";
-    return are_apart ? judge_distance(decision, bounds.lower, bounds.upper) : "";
-}
 
-/// Judges a mesh and a convex solid that meet, where one is said to contain the other: then it is the solid.
-std::string judge_mesh_in_solid(const JudgedObject& a, const JudgedObject& b, const std::vector<Triangle>& first,
-                                const std::vector<Triangle>& second, const std::vector<Vector>& directions,
-                                const Decision& decision) {
-    const JudgedObject& solid = first.empty() ? a : b;
-    const ConvexBody outer(solid.geometry.shape(), solid.pose);
-    for (const Triangle& triangle : first.empty() ? second : first) {
-        const Real out = sticks_out(ConvexBody({triangle.begin(), triangle.end()}), outer, directions);
-        if (out > decision.accuracy.place)
-            return "it is contained, but the solid meets the mesh, and a triangle sticks out of it by " + text_of(out);
+    /// Judges objects whose surfaces are certainly apart.
+    std::string judge_apart(const SurfaceBounds& bounds) const {
+        const Place a = second_.place_of(first_), b = first_.place_of(second_);
+        const bool are_apart = a.all_outside && b.all_outside;
+        if (decision_.says_meet()) {
+            if (decision_.found() == CollisionClass::contained && a.any_outside && b.any_outside)
+                return "it is contained, but a part of each object is outside the other one";
+            if (are_apart)
+                return "the objects do not meet: their surfaces are at least " + text_of(bounds.lower) + " apart";
+            if (!is_touching()) return {};
+            return "it is touching, but the surfaces are at least " + text_of(bounds.lower) + " apart";
+        }
+        if ((a.any_inside || b.any_inside) && !may_be_shallow()) return "a part of one object is inside the other one";
+        return are_apart ? judge_distance(decision_, bounds.lower, bounds.upper) : "";
     }
-    return {};
-}
+
+    /// Judges objects whose surfaces certainly meet.
+    std::string judge_meeting() const {
+        const bool has_solid = first_.is_solid() || second_.is_solid();
+        const bool is_contained = decision_.found() == CollisionClass::contained;
+        if (is_contained && has_solid) return judge_mesh_in_solid();
+        if ((is_contained || !decision_.says_meet()) && !may_be_shallow())
+            return "their surfaces pass through each other";
+        return is_touching() && !has_solid ? "it is touching, but two triangles pass through each other" : "";
+    }
+
+    /// Judges a mesh and a solid that meet, of which one is said to contain the other: then it is the solid.
+    std::string judge_mesh_in_solid() const {
+        const Side &mesh = first_.is_solid() ? second_ : first_, &solid = first_.is_solid() ? first_ : second_;
+        const ConvexBody outer = solid.solid();
+        const std::vector<Vector> directions = compared_directions(pair_.a.pose, pair_.b.pose);
+        for (const Triangle& triangle : mesh.triangles) {
+            const Real out = sticks_out(ConvexBody({triangle.begin(), triangle.end()}), outer, directions);
+            if (out > decision_.accuracy.place)
+                return "it is contained, but the solid meets the mesh, and a triangle sticks out of it by " +
+                       text_of(out);
+        }
+        return {};
+    }
+
+    const JudgedPair& pair_;
+    Side first_, second_;
+    const Decision& decision_;
+    const std::stop_token& stop_;
+};
 
 }  // namespace
 
@@ -207,36 +253,8 @@ std::vector<Triangle> triangles_of(const JudgedObject& object) {
     return triangles;
 }
 
-PairVerdict judge_meshes(const JudgedObject& a, const JudgedObject& b, const std::vector<Vector>& directions,
-                         const Decision& decision, const std::stop_token& stop) {
-    const std::vector<Triangle> first = triangles_of(a), second = triangles_of(b);
-    const std::vector<Box3d> first_boxes = boxes_of(a, first), second_boxes = boxes_of(b, second);
-    const Real distance = decision.finding != nullptr ? Real(decision.finding->distance) : Real(0);
-    if (!std::isfinite(distance)) return {"its distance is not finite"};
-    const Real reach = std::max(decision.reach, distance) + decision.accuracy.length;
-    const Surface near_first = surface_near(joined(second_boxes), a, first, first_boxes, double(reach));
-    const Surface near_second = surface_near(joined(first_boxes), b, second, second_boxes, double(reach));
-    const SurfaceBounds bounds = bound_surfaces(near_first, near_second, reach, decision.accuracy, stop);
-    if (!bounds.complete) return {"", "pairs of meshes with more than 200,000 pairs of near triangles"};
-
-    PairVerdict verdict{"",
-                        decision.says_meet() && decision.rules.features ? "depths and contacts of meshes" : nullptr};
-    const bool has_solid = first.empty() || second.empty();
-    const bool may_be_shallow = decision.was_dropped() && decision.rules.min_depth;
-    if (bounds.lower > decision.accuracy.place) {
-        verdict.fault = judge_apart(a, b, first, second, bounds, decision);
-    } else if (!bounds.meet) {
-        const bool is_distance_known = decision.found() == CollisionClass::clearance;
-        if (is_distance_known) verdict.fault = judge_distance(decision, bounds.lower, bounds.upper);
-        verdict.not_checked = "meshes that touch within rounding";
-    } else if (has_solid && decision.found() == CollisionClass::contained) {
-        verdict.fault = judge_mesh_in_solid(a, b, first, second, directions, decision);
-    } else if (!decision.says_meet() || decision.found() == CollisionClass::contained) {
-        if (!may_be_shallow) verdict.fault = "their surfaces pass through each other";
-    } else if (decision.found() == CollisionClass::touching && decision.rules.tolerance == 0 && !has_solid) {
-        verdict.fault = "it is touching, but two triangles pass through each other";
-    }
-    return verdict;
+PairVerdict judge_meshes(const JudgedPair& pair, const Decision& decision, const std::stop_token& stop) {
+    return MeshVerdict(pair, decision, stop).judge();
 }
 
 }  // namespace octopair::certificate

@@ -16,7 +16,6 @@ std::vector<Triangle> triangles_of(const JudgedObject& object);
 
 /// Judges two objects of which at least one is a mesh, and neither is a plane. Requires: a mesh has a triangle.
 /// Depths and contacts are not checked. Throws: Error{cancelled}.
-PairVerdict judge_meshes(const JudgedObject& a, const JudgedObject& b, const std::vector<Vector>& directions,
-                         const Decision& decision, const std::stop_token& stop);
+PairVerdict judge_meshes(const JudgedPair& pair, const Decision& decision, const std::stop_token& stop);
 
 }  // namespace octopair::certificate

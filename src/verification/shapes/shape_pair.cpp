@@ -45,13 +45,18 @@ Vector place_of(const JudgedObject& object) {
     return {object.pose.rows[0][3], object.pose.rows[1][3], object.pose.rows[2][3]};
 }
 
-/// Returns the errors that the narrow phase may make for two objects of these radii (docs/formats.md).
-Decision::Accuracy accuracy_of(const JudgedObject& a, const JudgedObject& b, Real first_radius, Real second_radius,
-                               Real coordinate) {
-    const Real small = std::min(first_radius, second_radius), large = std::max(first_radius, second_radius);
-    const Real apart = length(place_of(a) - place_of(b));
-    const Real place =
-        1e-8L * small + 1e-12L * large + 2e-14L * coordinate + (distortion(a) + distortion(b)) * (large + apart);
+/// What the accuracy of the narrow phase depends on.
+struct Sizes {
+    Real first, second;  ///< radii of the objects
+    Real coordinate;     ///< largest absolute value of a coordinate
+};
+
+/// Returns the errors that the narrow phase may make (docs/formats.md).
+Decision::Accuracy accuracy_of(const JudgedPair& pair, const Sizes& sizes) {
+    const Real small = std::min(sizes.first, sizes.second), large = std::max(sizes.first, sizes.second);
+    const Real apart = length(place_of(pair.a) - place_of(pair.b));
+    const Real place = 1e-8L * small + 1e-12L * large + 2e-14L * sizes.coordinate +
+                       (distortion(pair.a) + distortion(pair.b)) * (large + apart);
     constexpr Real very_different = 1000;
     const Real length = (large > very_different * small ? 2e-5L * large : 2e-6L * small) + place;
     return {place, length, length + 1e-6L * large};
@@ -61,17 +66,20 @@ Decision::Accuracy accuracy_of(const JudgedObject& a, const JudgedObject& b, Rea
 struct Extent {
     Real lowest = std::numeric_limits<Real>::infinity(), highest = -std::numeric_limits<Real>::infinity();
 
-    void add(Real low, Real high) {
-        lowest = std::min(lowest, low);
-        highest = std::max(highest, high);
+    void add(Real height) {
+        lowest = std::min(lowest, height);
+        highest = std::max(highest, height);
     }
     Real distance() const { return std::max({Real(0), lowest, -highest}); }
     /// Length of the shortest translation that ends the contact with the plane.
     Real depth() const { return std::max(Real(0), std::min(highest, -lowest)); }
 };
 
-PairVerdict judge_plane(const JudgedObject& plane_object, const shape::Plane& plane, const JudgedObject& other,
-                        const StageRules& rules, Real reach, const Finding* finding) {
+/// Judges a plane and another object.
+PairVerdict judge_plane(const JudgedPair& pair, Decision decision) {
+    const JudgedObject& plane_object = plane_of(pair.a) != nullptr ? pair.a : pair.b;
+    const JudgedObject& other = plane_of(pair.a) != nullptr ? pair.b : pair.a;
+    const shape::Plane& plane = *plane_of(plane_object);
     const auto& rows = plane_object.pose.rows;
     const Vector local = vector_of(plane.normal);
     const auto turned = [&](std::size_t i) { return dot({rows[i][0], rows[i][1], rows[i][2]}, local); };
@@ -80,29 +88,24 @@ PairVerdict judge_plane(const JudgedObject& plane_object, const shape::Plane& pl
     const Real offset = Real(plane.offset) / length(local) + dot(normal, place_of(plane_object));
 
     const ConvexBody body = body_of(other);
+    decision.accuracy = accuracy_of(pair, {body.radius(), body.radius(), body.largest_coordinate() + std::abs(offset)});
     const Extent whole{-body.reach(-normal) - offset, body.reach(normal) - offset};
     // A mesh may have parts on both sides.
-    Real distance = is_mesh(other) ? std::numeric_limits<Real>::infinity() : whole.distance(), depth = whole.depth();
+    Real distance = is_mesh(other) ? std::numeric_limits<Real>::infinity() : whole.distance();
     for (const Triangle& triangle : triangles_of(other)) {
         Extent extent;
-        for (const Vector& corner : triangle) {
-            const Real height = dot(corner, normal) - offset;
-            extent.add(height, height);
-        }
+        for (const Vector& corner : triangle) extent.add(dot(corner, normal) - offset);
         distance = std::min(distance, extent.distance());
     }
-    const Real radius = body.radius();
-    const Decision decision{
-        rules, finding, reach,
-        accuracy_of(plane_object, other, radius, radius, body.largest_coordinate() + std::abs(offset))};
     std::string fault = judge_distance(decision, distance, distance);
     if (!fault.empty()) return {fault};
-    if (distance == 0 && decision.contradicts(depth))
-        return {"the plane cuts the object to a depth of " + text_of(depth)};
-    if (is_mesh(other)) return {"", decision.says_meet() && rules.features ? "depths and contacts of meshes" : nullptr};
-    const bool has_depth = decision.says_meet() && rules.features && finding->depth_kind == DepthKind::least;
-    if (has_depth && !(std::abs(depth - finding->depth) <= decision.accuracy.length))
-        return {"its depth is " + text_of(finding->depth) + ", not " + text_of(depth)};
+    if (distance == 0 && decision.contradicts(whole.depth()))
+        return {"the plane cuts the object to a depth of " + text_of(whole.depth())};
+    if (!decision.says_meet() || !decision.rules.features) return {};
+    if (is_mesh(other)) return {"", "depths and contacts of meshes"};
+    const bool has_depth = decision.finding->depth_kind == DepthKind::least;
+    if (has_depth && !(std::abs(whole.depth() - decision.finding->depth) <= decision.accuracy.length))
+        return {"its depth is " + text_of(decision.finding->depth) + ", not " + text_of(whole.depth())};
     return {};
 }
 
@@ -112,20 +115,19 @@ bool is_empty(const JudgedObject& object) {
 
 }  // namespace
 
-PairVerdict judge_pair(const JudgedObject& a, const JudgedObject& b, const StageRules& rules, const Finding* finding,
+PairVerdict judge_pair(const JudgedPair& pair, const StageRules& rules, const Finding* finding,
                        const std::stop_token& stop) {
-    const Real reach = Real(rules.margin) + (Real(a.padding) + Real(b.padding));
-    const shape::Plane *const plane_a = plane_of(a), *const plane_b = plane_of(b);
-    if ((plane_a != nullptr && plane_b != nullptr) || is_empty(a) || is_empty(b))
+    const auto& [a, b] = pair;
+    Decision decision{rules, finding, Real(rules.margin) + (Real(a.padding) + Real(b.padding)), {}};
+    const bool any_plane = plane_of(a) != nullptr || plane_of(b) != nullptr;
+    if ((plane_of(a) != nullptr && plane_of(b) != nullptr) || is_empty(a) || is_empty(b))
         return {finding == nullptr ? "" : "two planes, and meshes without triangles, do not collide"};
-    if (plane_a != nullptr) return judge_plane(a, *plane_a, b, rules, reach, finding);
-    if (plane_b != nullptr) return judge_plane(b, *plane_b, a, rules, reach, finding);
+    if (any_plane) return judge_plane(pair, decision);
     const ConvexBody first = body_of(a), second = body_of(b);
     const Real coordinate = std::max(first.largest_coordinate(), second.largest_coordinate());
-    const Decision decision{rules, finding, reach, accuracy_of(a, b, first.radius(), second.radius(), coordinate)};
-    const std::vector<Vector> directions = compared_directions(a.pose, b.pose);
-    if (is_mesh(a) || is_mesh(b)) return judge_meshes(a, b, directions, decision, stop);
-    return judge_convex(first, second, directions, decision);
+    decision.accuracy = accuracy_of(pair, {first.radius(), second.radius(), coordinate});
+    if (is_mesh(a) || is_mesh(b)) return judge_meshes(pair, decision, stop);
+    return judge_convex(first, second, compared_directions(a.pose, b.pose), decision);
 }
 
 }  // namespace octopair

@@ -36,6 +36,10 @@ struct JudgedObject {
     double padding = 0;
 };
 
+struct JudgedPair {
+    JudgedObject a, b;
+};
+
 struct PairVerdict {
     /// What is wrong, for users; empty: no certificate contradicts the decision.
     std::string fault;
@@ -45,7 +49,7 @@ struct PairVerdict {
 
 /// Judges the decision that `finding` describes; null: the filters have dropped the pair. Requires: the objects do not move.
 /// Throws: Error{cancelled}. Thread safety: any thread may call it.
-PairVerdict judge_pair(const JudgedObject& a, const JudgedObject& b, const StageRules& rules, const Finding* finding,
+PairVerdict judge_pair(const JudgedPair& pair, const StageRules& rules, const Finding* finding,
                        const std::stop_token& stop = {});
 
 }  // namespace octopair

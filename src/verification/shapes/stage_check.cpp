@@ -30,7 +30,7 @@ std::string StageCheck::judge(Pair pair, std::set<std::string>& not_checked) con
     };
     const ShapedObjects& others = setup_.second != nullptr ? *setup_.second : setup_.first;
     const PairVerdict verdict =
-        judge_pair(object(setup_.first, pair.a), object(others, pair.b), setup_.rules, finding, setup_.stop);
+        judge_pair({object(setup_.first, pair.a), object(others, pair.b)}, setup_.rules, finding, setup_.stop);
     if (verdict.not_checked != nullptr) not_checked.insert(verdict.not_checked);
     return verdict.fault;
 }
