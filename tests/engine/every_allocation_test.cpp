@@ -122,7 +122,9 @@ TEST_P(EveryAllocation, OfAListOfOctantsMayFail) {
     const std::uint64_t failures =
         fail_every_allocation([&] { return 0; }, [&](int) { listed = list_octants(objects(), options).all().size(); },
                               [&](int, bool failed) {
-                                  if (!failed) EXPECT_EQ(listed, octants);
+                                  if (!failed) {
+                                      EXPECT_EQ(listed, octants);
+                                  }
                               });
     EXPECT_GT(failures, 10u);
 }

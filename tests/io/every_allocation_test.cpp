@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
                       std::pair("boxes.npy", npy_of(NpyType::float32, {2, 6}, std::vector<float>(12))),
                       std::pair("mesh.obj", cube_obj), std::pair("mesh.off", cube_off),
                       std::pair("mesh.stl", triangle_stl), std::pair("mesh.ply", triangle_ply)),
-    [](const auto& info) { return std::string(info.param.first).substr(std::string(info.param.first).find('.') + 1); });
+    [](const auto& test) { return std::string(test.param.first).substr(std::string(test.param.first).find('.') + 1); });
 
 TEST_P(EveryAllocation, OfAReaderMayFail) {
     const auto& [name, content] = GetParam();
@@ -54,7 +54,9 @@ TEST_P(EveryAllocation, OfAReaderMayFail) {
                               [&](std::optional<LoadedScene>& scene) { scene.emplace(io::read_scene(path, {})); },
                               [&](std::optional<LoadedScene>& scene, bool failed) {
                                   EXPECT_EQ(scene.has_value(), !failed);
-                                  if (scene) EXPECT_EQ(scene->objects, objects);
+                                  if (scene) {
+                                      EXPECT_EQ(scene->objects, objects);
+                                  }
                               });
     EXPECT_GT(failures, 3u);
 }

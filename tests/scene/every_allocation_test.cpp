@@ -157,7 +157,9 @@ TEST_P(EveryAllocation, OfASceneMayFail) {
             calls_[failing],
             [&](Observed& observed, bool failed) {
                 // What the failed call has left behind must suffice for a query. Octants read all arrays of the scene.
-                if (failed) EXPECT_EQ(observed.scene->octants().home_octants().size(), observed.scene->indices());
+                if (failed) {
+                    EXPECT_EQ(observed.scene->octants().home_octants().size(), observed.scene->indices());
+                }
                 if (failed) (void)observed.scene->overlaps(Box3d{{0, 0, 0}, {9, 9, 9}});
                 for (std::size_t i = failing + (failed ? 0 : 1); i < calls_.size(); ++i) calls_[i](observed);
                 EXPECT_EQ(observed.pairs, expected.pairs);

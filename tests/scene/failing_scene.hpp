@@ -134,7 +134,9 @@ private:
                 ++(stopped ? failures_.stops : failures_.allocations);
             }
             EXPECT_TRUE(before == contents());
-            if (chance(0.3)) EXPECT_EQ(scene_->pairs().to_vector(), pairs_);
+            if (chance(0.3)) {
+                EXPECT_EQ(scene_->pairs().to_vector(), pairs_);
+            }
         }
         return call();
     }

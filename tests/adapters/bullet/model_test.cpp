@@ -168,7 +168,7 @@ private:
         Collected found;
         const btVector3 lower = place(), upper = lower + size();
         call([&] {
-            found = {};
+            found.numbers.clear();
             broadphase_.aabbTest(lower, upper, found);
         });
         std::set<int> wanted;
