@@ -106,6 +106,7 @@ public:
             const MeshInstance at = std::move(waiting.back());
             waiting.pop_back();
             for (unsigned i = at.node->mNumChildren; i-- > 0;) {
+                if (at.node->mChildren[i] == nullptr) refuse(path_, "has a node that its importer could not read");
                 const aiNode& child = *at.node->mChildren[i];
                 waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child),
                                    at.translations + scale_of(at.pose) * translation_of(child)});
