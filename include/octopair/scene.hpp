@@ -121,10 +121,9 @@ public:
     const PairList& enlarged_pairs();
 
     /// Compares pairs() with the pairs that a second algorithm finds. It shares no code with the octree (docs/design.md, "Certificates").
-    /// The pairs are those of the last step, so call it directly after step(): also after a step with swept objects.
+    /// Call it directly after step(), because the pairs are those of the last step.
     /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} if there was no step yet, or if an object was added,
-    /// changed or removed after the last step; Error{resource_limit} if the memory does not suffice; Error{cancelled} within 200 ms after a
-    /// stop request.
+    /// changed or removed since; Error{resource_limit} if the memory does not suffice; Error{cancelled} within 200 ms after a stop request.
     /// Complexity: as Options::verify, on the scene's threads. After a step with swept objects, also a copy of the boxes.
     Verification verify(std::stop_token stop = {});
 
