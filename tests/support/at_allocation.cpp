@@ -62,14 +62,14 @@ bool AtAllocation::reached() const { return allocations_left < 0; }
 
 namespace {
 
-void* allocate(std::size_t bytes, const void* caller) {
+[[maybe_unused]] void* allocate(std::size_t bytes, const void* caller) {
     before_allocation(caller);
     void* const memory = std::malloc(bytes == 0 ? 1 : bytes);
     if (memory == nullptr) throw std::bad_alloc();
     return memory;
 }
 
-void* allocate(std::size_t bytes, std::align_val_t alignment, const void* caller) {
+[[maybe_unused]] void* allocate(std::size_t bytes, std::align_val_t alignment, const void* caller) {
     before_allocation(caller);
     void* memory = nullptr;
     if (::posix_memalign(&memory, std::size_t(alignment), bytes == 0 ? 1 : bytes) != 0) throw std::bad_alloc();
@@ -78,7 +78,7 @@ void* allocate(std::size_t bytes, std::align_val_t alignment, const void* caller
 
 /// Calls allocate(arguments...). Returns null if the memory does not suffice.
 template <typename... Arguments>
-void* allocate_or_null(Arguments... arguments) noexcept {
+[[maybe_unused]] void* allocate_or_null(Arguments... arguments) noexcept {
     try {
         return allocate(arguments...);
     } catch (const std::bad_alloc&) {
@@ -90,8 +90,12 @@ void* allocate_or_null(Arguments... arguments) noexcept {
 
 }  // namespace octopair::test
 
-// Replace the functions of the standard library. A sanitizer requires that all of them are replaced.
-using octopair::test::allocate, octopair::test::allocate_or_null, octopair::test::before_allocation;
+using octopair::test::before_allocation;
+
+// Replace the functions of the standard library. The address sanitizer requires that all of them are replaced; the thread sanitizer
+// forbids it.
+#ifndef OCTOPAIR_TEST_THREAD_SANITIZER
+using octopair::test::allocate, octopair::test::allocate_or_null;
 // NOLINTBEGIN(misc-new-delete-overloads)
 void* operator new(std::size_t bytes) { return allocate(bytes, __builtin_return_address(0)); }
 void* operator new[](std::size_t bytes) { return allocate(bytes, __builtin_return_address(0)); }
@@ -124,6 +128,7 @@ void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free
 void operator delete(void* memory, std::align_val_t, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::align_val_t, const std::nothrow_t&) noexcept { std::free(memory); }
 // NOLINTEND(misc-new-delete-overloads)
+#endif
 
 // The linker replaces calls of mmap and aligned_alloc by calls of these (option --wrap).
 extern "C" {
