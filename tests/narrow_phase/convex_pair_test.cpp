@@ -338,6 +338,53 @@ TEST(ConvexPair, HugeAgainstTiny) {
     }
 }
 
+/// Returns a pose whose numbers are rounded: those of the next two tests were found by certificates in random pairs.
+Pose rows(const std::array<std::array<double, 4>, 3>& numbers) {
+    Pose pose;
+    pose.rows = numbers;
+    return pose;
+}
+
+/// The search for the distance ends early, because of rounding at the far vertices of the large hull.
+TEST(ConvexPair, ATinyHullIsToldApartFromALargeOne) {
+    const Thing tiny(shape::ConvexHull{{{0x1.01d1874224ea9p-18, -0x1.a960204d08f8ap-18, -0x1.274fd12470215p-18},
+                                        {-0x1.4dc0cefd81fabp-18, 0x1.eea91f74d6466p-18, 0x1.583da1e367fb9p-18},
+                                        {-0x1.34c022b5e9066p-20, -0x1.b7cfcf6311069p-19, 0x1.46a3af937eb3cp-20},
+                                        {0x1.0c1af372fdd0ep-23, 0x1.b431a60c1bab1p-19, 0x1.2646119fcb83dp-19}}},
+                     Point3d{-0x1.408fccc3ef5d4p+0, -0x1.118f6375382bep-4, -0x1.6340fc881b9cfp+1});
+    const Thing large(
+        shape::ConvexHull{{{-0x1.c0efb23d23b12p-2, -0x1.03f2b8e507f97p-1, -0x1.e096ba76dbfp-3},
+                           {0x1.ed43bba1eaef6p-2, 0x1.432051b8f8a28p-1, 0x1.e3189264b995cp-3},
+                           {0x1.8dffa70029a41p-1, -0x1.7ff787615c51ap+0, 0x1.9eb49586ca45ep-1},
+                           {0x1.6a1b06eabbefp-4, -0x1.b8a726b9585bap+0, -0x1.dceb74998179p+0},
+                           {-0x1.9b96c9502d881p-1, -0x1.2a65806123778p-3, 0x1.798181f5aac64p-2},
+                           {-0x1.473aaea06f375p+0, -0x1.a6bdaa3be2f52p-1, 0x1.963ceef36180cp-3}}},
+        rows({{{0x1.b5fe5ed580c3p-1, 0x1.0133b03da82e6p-1, 0x1.01c4799b5cfe4p-3, -0x1.d4497cb963114p-3},
+               {-0x1.c31715a2c78edp-2, 0x1.aad287587c74fp-1, -0x1.5526c2ffec4dep-2, 0x1.92a919295872p-1},
+               {-0x1.16d1a1204a9c4p-2, 0x1.d6210d89eefd2p-3, 0x1.de6e0e3c5d449p-1, -0x1.3b149a4cb976dp-1}}}));
+    EXPECT_FALSE(meet(tiny, large));
+    EXPECT_NEAR(gap(tiny, large), 3.8704e-10, 1e-14);
+}
+
+/// The segment of the capsule is 37,000 above the hull: the way between the two nearest points is too inaccurate a direction for the depth.
+TEST(ConvexPair, ACapsuleInTheSurfaceOfALargeHull) {
+    const Thing capsule(
+        shape::Capsule{0x1.3599d718ef7b8p+20, 0x1.d64f3d4a1d71bp+18},
+        rows({{{0x1.e792296cf5d7p-1, -0x1.c353118beb772p-3, -0x1.b0705af073af2p-3, 0x1.176a8c71c6e8ep+35},
+               {0x1.25df73ae161c4p-2, 0x1.c396a28c420e3p-1, 0x1.7ebc3fc1ec83ep-2, -0x1.5f04dfd37fc77p+34},
+               {0x1.a97379d36b408p-4, -0x1.aa8692f64827dp-2, 0x1.ce6c326097ee6p-1, 0x1.d87db93762918p+33}}}));
+    const Thing hull(
+        shape::ConvexHull{{{-0x1.6b71307d32d46p+33, -0x1.d66d93abad01p+31, 0x1.32845c91b59ecp+33},
+                           {0x1.183140860bb9fp+34, -0x1.0ec0f31052892p+36, 0x1.7c81c7d68965cp+35},
+                           {-0x1.ebffc19f02558p+32, -0x1.a15f15f4f8ce9p+34, -0x1.e9d21b1cabc9cp+35},
+                           {0x1.2670e4109cfd8p+33, 0x1.4b713e35ac7c3p+34, 0x1.59693364dc6a4p+36}}},
+        rows({{{0x1.c6d1029208ed1p-2, 0x1.bb0248577fadep-1, -0x1.dc31e67235008p-3, 0x1.756802b308aecp+35},
+               {0x1.550b2f1440ac6p-1, -0x1.29a5b732a34fcp-3, 0x1.768fa9f3064bep-1, 0x1.82ec32410549cp+34},
+               {0x1.32c9a7dd577a4p-1, -0x1.eb531ca43ab39p-2, -0x1.4823a0d9c75f6p-1, -0x1.03144c53b944fp+35}}}));
+    EXPECT_NEAR(contact(capsule, hull).depth, 1231086.04, 0.1);
+    EXPECT_NEAR(contact(hull, capsule).depth, 1231086.04, 0.1);
+}
+
 TEST(ConvexPair, FarFromTheOrigin) {
     RandomStream random(8, 0);
     for (int kind = 0; kind < kinds; ++kind) {

@@ -2,7 +2,7 @@
 //
 // Depth     The overlap along any direction, computed from two supports, is a depth that separates the objects. The depth is
 //           the least overlap.
-// Apart     If the cores do not meet, its direction is that between their nearest points.
+// Apart     If the cores do not meet, its direction is the one that proves their distance.
 // Meeting   If they meet, an expanding polytope finds it (difference_hull.hpp).
 // Safety    If rounding misleads the search, the depth is larger than necessary, but the contact separates the objects.
 #include <algorithm>
@@ -45,7 +45,7 @@ ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
     LeastOverlap least(pair);
     // A gap close to the rounding error has no reliable direction.
     if (core.at_least > 0 && core.at_most > 1e4 * pair.slack()) {
-        least.propose(vector::minus(core.on_b, core.on_a));
+        least.propose(core.direction);
     } else {
         propose_axes(pair.a(), least);
         propose_axes(pair.b(), least);

@@ -11,6 +11,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
@@ -161,14 +162,28 @@ Vertex support(const LocalConvexPair& pair, const Point3d& direction) {
     return vertex;
 }
 
-/// Returns the larger of `at_least` and the best lower bound proven by a face around the nearest point. Needed for two faces
-/// close to each other: if the nearest points lie on an edge or corner, the short gap does not determine the normal.
-double prove_by_faces(const LocalConvexPair& pair, const Simplex& simplex, double at_least) {
+/// A lower bound on the distance, and the direction that proves it: all vertices of the difference are so far along it.
+struct Proof {
+    double at_least = 0;
+    Point3d direction = {};
+
+    /// Takes a direction of length 1 if it proves more. Returns the vertex that is least far along it.
+    Vertex try_direction(const LocalConvexPair& pair, const Point3d& unit) {
+        const Vertex least = support(pair, vector::times(unit, -1));
+        const double bound = vector::dot(least.apart, unit) - pair.slack();
+        if (bound > at_least) at_least = bound, direction = unit;
+        return least;
+    }
+};
+
+/// Improves a proof by the faces around the nearest point, whose normals are like `direction`. Needed for two faces close to each other: if
+/// the nearest points lie on an edge or corner, the short gap does not determine the normal.
+void prove_by_faces(const LocalConvexPair& pair, std::span<const Vertex> vertices, const Point3d& direction,
+                    Proof& proof) {
     constexpr double aside = 1e-5, alike = 0.999;
-    const Point3d direction = simplex.direction();
     std::array<Vertex, 8> around = {};
     std::size_t count = 0;
-    for (const Vertex& vertex : simplex.vertices()) around[count++] = vertex;
+    for (const Vertex& vertex : vertices) around[count++] = vertex;
     const Point3d axis = std::fabs(direction[0]) < 0.6 ? Point3d{1, 0, 0} : Point3d{0, 1, 0};
     const Point3d first = vector::cross(direction, axis), second = vector::cross(direction, first);
     for (const Point3d& way : {first, second}) {
@@ -183,21 +198,78 @@ double prove_by_faces(const LocalConvexPair& pair, const Simplex& simplex, doubl
                 const Point3d normal = vector::cross(edge, vector::minus(around[k].apart, around[i].apart));
                 const double along = vector::dot(normal, direction);
                 if (!(std::fabs(along) > alike * vector::length(normal))) continue;
-                const Point3d unit = vector::times(normal, std::copysign(1 / vector::length(normal), along));
-                const Vertex next = support(pair, vector::times(unit, -1));
-                at_least = std::max(at_least, vector::dot(next.apart, unit) - pair.slack());
+                const double size = vector::length(normal);
+                (void)proof.try_direction(pair, vector::times(normal, std::copysign(1 / size, along)));
             }
         }
     }
-    return at_least;
 }
 
-CoreGap gap_of(const Simplex& simplex, double at_least) {
+/// A proof that the objects are apart, and the vertices of the difference that determine its direction.
+struct Separation {
+    Proof proof;
+    std::array<Vertex, 3> vertices = {};
+    std::size_t count = 0;
+};
+
+/// Searches a direction that proves the objects apart, beginning with the vertices of a simplex.
+///
+/// If one object is much larger than the other one, the difference of the objects has vertices near the origin and far ones. Then rounding at
+/// the far ones may end the search for the distance before the near ones are right. Whether a direction proves the objects apart does not
+/// depend on how far a vertex is. So this search is GJK with all vertices moved to the unit sphere.
+std::optional<Separation> search_directions(const LocalConvexPair& pair, const Simplex& simplex) {
+    constexpr int max_steps = 64;
+    constexpr double rounding = 1e-12;
+    const auto on_sphere = [](Vertex vertex) {
+        vertex.apart = vector::times(vertex.apart, 1 / vector::length(vertex.apart));
+        return vertex;
+    };
+    Simplex units(rounding);
+    for (const Vertex& vertex : simplex.vertices()) units.add(on_sphere(vertex));
+    units.reduce();
+    for (int step = 0; step < max_steps; ++step) {
+        const double length = vector::length(units.nearest());
+        if (units.encloses() || !(length > rounding)) return {};
+        Separation found;
+        const Vertex next = found.proof.try_direction(pair, units.direction());
+        if (found.proof.at_least > 0) {
+            for (Vertex vertex : units.vertices()) {
+                vertex.apart = vector::minus(vertex.on_a, vertex.on_b);
+                found.vertices[found.count++] = vertex;
+            }
+            return found;
+        }
+        const Vertex unit = on_sphere(next);
+        if (units.has(unit)) return {};
+        Simplex larger = units;
+        larger.add(unit);
+        larger.reduce();
+        if (!(vector::length(larger.nearest()) < length)) return {};
+        units = larger;
+    }
+    return {};
+}
+
+CoreGap gap_of(const Simplex& simplex, const Proof& proof) {
     CoreGap gap;
     gap.on_a = simplex.mix(&Vertex::on_a), gap.on_b = simplex.mix(&Vertex::on_b);
     gap.at_most = vector::length(simplex.nearest());
-    gap.at_least = std::min(at_least, gap.at_most);
+    gap.at_least = std::min(proof.at_least, gap.at_most);
+    gap.direction = proof.direction;
     return gap;
+}
+
+/// Returns the gap after a search for the distance that has found `simplex`, but could not prove that the objects are apart.
+CoreGap gap_by_directions(const LocalConvexPair& pair, const Simplex& simplex) {
+    auto found = search_directions(pair, simplex);
+    if (!found) return gap_of(simplex, {});
+    const std::span<const Vertex> vertices(found->vertices.data(), found->count);
+    prove_by_faces(pair, vertices, Point3d(found->proof.direction), found->proof);
+    Simplex near(pair.slack());
+    for (const Vertex& vertex : vertices) near.add(vertex);
+    near.reduce();
+    const bool is_nearer = vector::length(near.nearest()) < vector::length(simplex.nearest());
+    return gap_of(is_nearer ? near : simplex, found->proof);
 }
 
 }  // namespace
@@ -206,7 +278,7 @@ CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough) 
     constexpr int max_steps = 256;
     constexpr double relative = 4 * std::numeric_limits<double>::epsilon();
     const double slack = pair.slack();
-    double at_least = 0;
+    Proof proof;
     bool decided = false;
     Simplex simplex(slack);
     simplex.add(support(pair, vector::minus(pair.b().middle(), pair.a().middle())));
@@ -215,10 +287,8 @@ CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough) 
         const double at_most = vector::length(simplex.nearest());
         decided = simplex.encloses() || at_most <= slack || (enough && at_most <= *enough);
         if (decided) break;
-        const Point3d direction = simplex.direction();
-        const Vertex next = support(pair, vector::times(direction, -1));
-        at_least = std::max(at_least, vector::dot(next.apart, direction) - slack);
-        decided = (enough && at_least > *enough) || at_most - at_least <= 2 * slack + relative * at_most;
+        const Vertex next = proof.try_direction(pair, simplex.direction());
+        decided = (enough && proof.at_least > *enough) || at_most - proof.at_least <= 2 * slack + relative * at_most;
         if (decided || simplex.has(next)) break;
         Simplex larger = simplex;
         larger.add(next);
@@ -226,7 +296,8 @@ CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough) 
         if (!(vector::length(larger.nearest()) < at_most)) break;
         simplex = larger;
     }
-    return gap_of(simplex, decided ? at_least : prove_by_faces(pair, simplex, at_least));
+    if (!decided) prove_by_faces(pair, simplex.vertices(), simplex.direction(), proof);
+    return decided || proof.at_least > 0 ? gap_of(simplex, proof) : gap_by_directions(pair, simplex);
 }
 
 }  // namespace octopair
