@@ -1,8 +1,12 @@
 // View: pages of a running scene, over real connections.
+#include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <set>
@@ -241,6 +245,26 @@ TEST(View, CountsItsPages) {
         EXPECT_TRUE(wait_until([&] { return view.pages() == 2; }));
     }
     EXPECT_TRUE(wait_until([&] { return view.pages() == 0; }));
+}
+
+/// Otherwise a program that the user's program starts would keep the port and the connections open.
+TEST(View, NoSocketIsInherited) {
+    MovingScene scene(10);
+    View view(scene.scene());
+    const PageClient page(view.address());
+    ASSERT_TRUE(wait_until([&] { return view.pages() == 1; }));
+    int sockets = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+        const int number = std::stoi(entry.path().filename());
+        sockaddr_in address{};
+        socklen_t size = sizeof address;
+        const bool is_socket = ::getsockname(number, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+        const std::string port = ":" + std::to_string(ntohs(address.sin_port)) + "/";
+        if (!is_socket || address.sin_family != AF_INET || view.address().find(port) == std::string::npos) continue;
+        ++sockets;
+        EXPECT_NE(::fcntl(number, F_GETFD) & FD_CLOEXEC, 0);
+    }
+    EXPECT_EQ(sockets, 2);  // one listens, the other one is the page's connection
 }
 
 TEST(View, EndsWhilePagesWait) {

@@ -1,12 +1,14 @@
 #include "viewer/server/page_server.hpp"
 
 #include <sys/resource.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <cerrno>
 #include <chrono>
 #include <future>
 #include <set>
@@ -14,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "viewer/server/connection.hpp"
 #include "viewer/server/messages.hpp"
@@ -162,10 +165,17 @@ private:
         }
     }
 
+    // Programs that the user's program starts must not inherit sockets: they would keep connections open. Asio has no option for that, so
+    // these functions open and accept sockets themselves.
+    static constexpr int socket_flags = SOCK_CLOEXEC | SOCK_NONBLOCK;
+
     std::uint16_t open(const PageServerOptions& options) {
         const Tcp::endpoint endpoint = endpoint_of(options);
         boost::system::error_code error;
-        acceptor_.open(endpoint.protocol(), error);
+        Descriptor socket(::socket(endpoint.protocol().family(), SOCK_STREAM | socket_flags, 0));
+        if (!socket.open()) error.assign(errno, boost::system::system_category());
+        if (!error) acceptor_.assign(endpoint.protocol(), socket.number(), error);
+        if (!error) (void)socket.release();  // the acceptor owns it
         if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
         if (!error) acceptor_.bind(endpoint, error);
         if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
@@ -178,15 +188,31 @@ private:
     }
 
     void accept() {
-        acceptor_.async_accept([this](boost::system::error_code error, Tcp::socket socket) {
+        acceptor_.async_wait(Tcp::acceptor::wait_read, [this](boost::system::error_code error) {
             if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
-            if (error) return accept_later();
-            if (accepts(socket)) serve_connection(std::move(socket), *this);
+            if (error || !accept_waiting()) return accept_later();
             accept();
         });
     }
 
-    /// Waits before the next connection is accepted, for example because the process has too many open files.
+    /// Accepts the connections that wait. Returns false if one cannot be accepted, for example because the process has too many open files.
+    bool accept_waiting() {
+        for (;;) {
+            Descriptor connection(::accept4(acceptor_.native_handle(), nullptr, nullptr, socket_flags));
+            if (!connection.open()) {
+                if (errno == EINTR || errno == ECONNABORTED) continue;
+                return errno == EAGAIN;
+            }
+            boost::system::error_code error;
+            Tcp::socket socket(io_);
+            socket.assign(acceptor_.local_endpoint().protocol(), connection.number(), error);
+            if (error) return false;
+            (void)connection.release();  // the socket owns it
+            if (accepts(socket)) serve_connection(std::move(socket), *this);
+        }
+    }
+
+    /// Waits before the next connection is accepted.
     void accept_later() {
         pause_.expires_after(100ms);
         pause_.async_wait([this](boost::system::error_code) {
