@@ -84,7 +84,14 @@ class SceneCalls:
         self._scene.set_traits(objects, traits)
 
     def step(self) -> StepResult:
-        """Finds the pairs that began and ended since the last step."""
+        """Finds the pairs that began and ended since the last step.
+
+        Raises
+        ------
+        MemoryError
+            The pairs, or the arrays of the result, do not fit into memory. Call :meth:`step` again. Until then, calls that change or
+            search the scene, or that list pairs, may raise :class:`UsageError`.
+        """
         return StepResult(*self._scene.step())
 
     def pairs(self) -> Array:

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -68,9 +69,11 @@ py::array_t<Number> array_of(std::vector<Element>&& vector, const std::vector<py
     std::vector<py::ssize_t> shape = {py::ssize_t(vector.size())};
     shape.insert(shape.end(), columns.begin(), columns.end());
     if (vector.empty()) return py::array_t<Number>(shape);
-    auto* const owned = new std::vector<Element>(std::move(vector));
-    const py::capsule owner(owned, [](void* memory) { delete static_cast<std::vector<Element>*>(memory); });
-    return py::array_t<Number>(shape, reinterpret_cast<const Number*>(owned->data()), owner);
+    auto owned = std::make_unique<std::vector<Element>>(std::move(vector));
+    const auto* const numbers = reinterpret_cast<const Number*>(owned->data());
+    const py::capsule owner(owned.get(), [](void* memory) { delete static_cast<std::vector<Element>*>(memory); });
+    (void)owned.release();  // the capsule owns it
+    return py::array_t<Number>(shape, numbers, owner);
 }
 
 /// Return a copy of pairs with shape (m, 2).

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "arrays.hpp"
 #include "call.hpp"
+#include "octopair/error.hpp"
 #include "octopair/scene.hpp"
 
 namespace octopair::python {
@@ -54,13 +56,19 @@ public:
         const std::vector<Traits> rows = traits_of(traits[0], traits[1], traits[2]);
         run([&] { scene_->set_traits(ids_of(ids), rows); });
     }
-    /// Returns (began, ended, persisting, full, seconds).
+    /// Returns (began, ended, persisting, full, seconds). If memory for the arrays is missing, the step has happened all the same. The next
+    /// call of step() returns its result. Until then, calls that would invalidate the result throw.
     py::tuple step() {
         const Turn::Holder turn(turn_);
-        StepResult result;
-        call({scene_->size()}, [&](const std::stop_token& stop, auto&&...) { result = scene_->step(stop); });
-        return py::make_tuple(pairs_array(result.began), pairs_array(result.ended), result.persisting, result.full,
-                              result.seconds);
+        if (!untaken_) {
+            const StepResult* result = nullptr;
+            call({scene_->size()}, [&](const std::stop_token& stop, auto&&...) { result = &scene_->step(stop); });
+            untaken_ = *result;
+        }
+        py::tuple taken = py::make_tuple(pairs_array(untaken_->began), pairs_array(untaken_->ended),
+                                         untaken_->persisting, untaken_->full, untaken_->seconds);
+        untaken_.reset();
+        return taken;
     }
     py::array pairs() {
         return list([&] { return &scene_->pairs(); });
@@ -109,6 +117,7 @@ protected:
     void run(Work work) {
         const Turn::Holder turn(turn_);
         check_not_forked();
+        check_taken();
         const Unlocked unlocked;
         work();
     }
@@ -116,11 +125,13 @@ protected:
     template <typename Work>
     void run_until_stopped(Work work) {
         const Turn::Holder turn(turn_);
+        check_taken();
         call({scene_->size()}, [&](const std::stop_token& stop, auto&&...) { work(stop); });
     }
     template <typename Get>
     py::array list(Get find) {
         const Turn::Holder turn(turn_);
+        check_taken();
         const PairList* found = nullptr;
         call({scene_->size()}, [&](auto&&...) { found = find(); });
         return pairs_array(*found);
@@ -133,7 +144,14 @@ protected:
     }
 
 private:
+    void check_taken() const {
+        if (untaken_)
+            throw Error(ErrorCode::usage,
+                        "memory ran out before the result of the last step was returned: call step() again");
+    }
+
     std::unique_ptr<S, ReleasedDelete> scene_;
+    std::optional<StepResult> untaken_;  ///< result of the last step, until Python has it
     Turn turn_;
 };
 

@@ -5,6 +5,7 @@ import signal
 import numpy as np
 import pytest
 from conftest import brute_force, random_boxes, serving
+from failing_arrays import room_for
 
 import octopair as op
 
@@ -112,12 +113,15 @@ def test_an_interrupted_step_happens_or_not(make_scene):
     ids = scene.add(boxes)
     before = np.empty((0, 2), np.uint32)
     former = signal.signal(signal.SIGALRM, interrupt)
+    interrupted = 0
     try:
         for step in range(40):
             moved = np.arange(len(boxes)) if step % 4 == 0 else rng.choice(len(boxes), 30, replace=False)
             boxes[moved] = random_boxes(len(moved), seed=step, size=0.05)
             scene.move(ids[moved], boxes[moved])
-            result = step_unless_interrupted(scene, 1e-6 + 0.004 * rng.random())
+            # Every tenth step is certainly interrupted, and every tenth is not.
+            result = step_unless_interrupted(scene, {0: 1e-6, 5: 3600}.get(step % 10, 0.004 * rng.random() + 1e-6))
+            interrupted += result is None
             if result is None and np.array_equal(scene.pairs(), before):
                 result = scene.step()
             now = op.find_pairs(boxes)
@@ -128,6 +132,32 @@ def test_an_interrupted_step_happens_or_not(make_scene):
             before = now
     finally:
         signal.signal(signal.SIGALRM, former)
+    assert 0 < interrupted < 40
+
+
+@pytest.mark.parametrize("arrays", [0, 1])
+def test_a_step_whose_arrays_do_not_fit_is_returned_by_the_next_call(make_scene, arrays):
+    boxes = random_boxes(50, size=0.3)
+    scene, untroubled = make_scene(), op.Scene()
+    ids = scene.add(boxes)
+    assert np.array_equal(untroubled.add(boxes), ids)
+    for step in range(3):
+        with room_for(arrays), pytest.raises(MemoryError):
+            scene.step()
+        calls = [lambda: scene.add(boxes), lambda: scene.move(ids, boxes), lambda: scene.sweep(ids, boxes), lambda: scene.remove(ids),
+                 lambda: scene.set_traits(ids, fixed=True), scene.pairs, scene.persisting]
+        for call in calls:
+            with pytest.raises(op.UsageError, match="call step\\(\\) again"):
+                call()
+        assert len(scene) == 50 and scene.contains(ids).all()
+        result, expected = scene.step(), untroubled.step()
+        assert np.array_equal(result.began, expected.began) and np.array_equal(result.ended, expected.ended)
+        assert result.persisting == expected.persisting
+        assert np.array_equal(scene.pairs(), untroubled.pairs())
+        boxes = random_boxes(50, seed=step + 2, size=0.3)
+        scene.move(ids, boxes)
+        untroubled.move(ids, boxes)
+    assert not np.array_equal(expected.ended, np.empty((0, 2)))
 
 
 def test_sweep_and_traits(make_scene):
