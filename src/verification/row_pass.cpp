@@ -12,8 +12,6 @@ namespace octopair {
 
 namespace {
 
-constexpr std::uint32_t block_rows = 256;
-
 /// Keeps the fault of the lowest row among the faults that several threads report.
 class LowestFault {
 public:
@@ -48,12 +46,12 @@ ResultFault RowPass::run(const RowRange& range, Columns order, const Visit& visi
             if (ResultFault fault = visit(std::uint32_t(a), row)) lowest.report(a, std::move(*fault));
         }
     };
-    const std::uint64_t wave_rows = std::uint64_t(block_rows) * 64 * team_.threads();
+    const std::uint64_t wave_rows = std::uint64_t(range.block) * 64 * team_.threads();
     for (std::uint64_t begin = range.begin; begin < range.end; begin += wave_rows) {
         const std::uint64_t end = std::min<std::uint64_t>(range.end, begin + wave_rows);
-        team_.for_each(std::size_t((end - begin + block_rows - 1) / block_rows), [&](std::size_t i, unsigned worker) {
-            const std::uint64_t block = begin + i * block_rows;
-            visit_block(block, std::min(end, block + block_rows), columns[worker]);
+        team_.for_each(std::size_t((end - begin + range.block - 1) / range.block), [&](std::size_t i, unsigned worker) {
+            const std::uint64_t block = begin + i * range.block;
+            visit_block(block, std::min(end, block + range.block), columns[worker]);
         });
         if (ResultFault fault = lowest.take()) return fault;
         if (progress_) progress_(double(end) / double(rows_.rows()));

@@ -17,6 +17,7 @@ namespace octopair {
 
 struct RowRange {
     std::uint32_t begin = 0, end = 0;
+    std::uint32_t block = 256;  ///< number of rows that a thread takes at a time
 };
 
 /// The order in which a visit gets the columns of a row.

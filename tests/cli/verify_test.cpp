@@ -97,7 +97,7 @@ TEST_F(DetectVerify, WithExclusionsAndMeshes) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const nlohmann::json stats = nlohmann::json::parse(content("s.json"));
     EXPECT_EQ(stats.at("pairs"), 2);
-    EXPECT_EQ(stats.at("not_checked"), "depths and contacts of meshes");
+    EXPECT_EQ(stats.at("not_checked"), "exclusion rules; depths and contacts of meshes");
     const Outcome counted = run("detect scene.json --stage objects --verify --count-only --margin 0.1");
     EXPECT_EQ(counted.status, 0) << counted.err;
     EXPECT_EQ(counted.out, "3\n");

@@ -2,6 +2,7 @@
 // million, at scales from 2^-500 to 2^500, in both orders and turned at random.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -83,6 +84,15 @@ Scene random_pair(int first, int second, double ratio, double scale, RandomStrea
     return scene;
 }
 
+/// Returns a margin that differs from the distance of the two objects by about a hundred millionth of the larger one's size, or less.
+double margin_near_distance(const Scene& scene, double scale, RandomStream& random) {
+    const auto body = [&](std::size_t i) {
+        return certificate::ConvexBody(scene.geometries[scene.geometry[i]].shape(), scene.poses[i]);
+    };
+    const certificate::Real distance = certificate::bound_distance(body(0), body(1), 0, scale * 1e6L).upper;
+    return std::max(0.0, double(distance) + scale * random.gaussian() * std::pow(10, random.uniform(-16, -8)));
+}
+
 class Certificates : public ::testing::TestWithParam<int> {};
 
 TEST_P(Certificates, AgreeWithTheNarrowPhase) {
@@ -99,7 +109,9 @@ TEST_P(Certificates, AgreeWithTheNarrowPhase) {
             const double scale = random.below(2) == 0 ? 1 : std::ldexp(1, int(random.below(1001)) - 500);
             const Scene scene = random_pair(GetParam(), second, ratio, scale, random);
             ExactOptions options;
-            options.margin = random.below(2) == 0 ? 0 : scale / ratio * random.uniform();
+            const std::uint64_t kind_of_margin = random.below(3);
+            if (kind_of_margin == 1) options.margin = scale / ratio * random.uniform();
+            if (kind_of_margin == 2) options.margin = margin_near_distance(scene, scale, random);
             const std::vector<Collision> collisions = find(scene, options, 1);
             const Finding* const finding = collisions.empty() ? nullptr : &collisions[0].finding;
             const auto object = [&](std::size_t k) {

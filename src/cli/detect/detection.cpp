@@ -161,7 +161,7 @@ void DetectReport::add(const Verification& verification) {
 
 void DetectReport::add_not_checked(std::string_view what) {
     if (what.empty() || not_checked.find(what) != std::string::npos) return;
-    not_checked += (not_checked.empty() ? "" : ", ") + std::string(what);
+    not_checked += (not_checked.empty() ? "" : "; ") + std::string(what);
 }
 
 void DetectReport::add(const Summary& summary, double written) {

@@ -1,7 +1,5 @@
 #include "cli/detect/filter_chain.hpp"
 
-#include <algorithm>
-#include <iterator>
 #include <optional>
 
 #include "cli/detect/exclusions.hpp"
@@ -41,16 +39,30 @@ public:
     }
 
     std::vector<Pair> excluded(Engine& engine, std::uint64_t frame) override {
-        std::vector<Pair> excluded, kept;
+        std::vector<Pair> excluded;
         if (!has_exclusions_) return excluded;
         PairList all;
         engine.find_pairs(input_of(frame), all, {.margin = margin_}, stop_);
+        // The filters keep the order of the pairs. Those between two that they keep are excluded.
+        auto chunk = all.chunks().begin();
+        std::size_t next = 0;
+        const auto exclude_up_to = [&](std::optional<Pair> kept) {
+            for (; chunk != all.chunks().end(); ++chunk, next = 0) {
+                for (; next < chunk->size(); ++next) {
+                    const Pair pair = (*chunk)[next];
+                    if (kept && pair == *kept) {
+                        ++next;
+                        return;
+                    }
+                    excluded.push_back(pair);
+                }
+            }
+        };
         const CollisionSink keep = [&](const Batch& batch) {
-            kept.insert(kept.end(), batch.pairs().begin(), batch.pairs().end());
+            for (const Pair pair : batch.pairs()) exclude_up_to(pair);
         };
         exclusions_.filter(all, keep, {}, stop_);
-        for (const std::span<const Pair> chunk : all.chunks())
-            std::ranges::set_difference(chunk, kept, std::back_inserter(excluded));
+        exclude_up_to({});
         return excluded;
     }
 

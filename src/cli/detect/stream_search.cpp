@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "base/timed.hpp"
 #include "cli/detect/filter_chain.hpp"
@@ -51,16 +52,12 @@ public:
 private:
     void find(std::uint64_t frame) {
         const Options options = run_.call_options(frame);
+        if (filters_ != nullptr) return find_collisions(frame, options);
         const double written_before = run_.report.seconds.write;
-        const auto written = [&] { return run_.report.seconds.write - written_before; };
-        if (filters_ != nullptr) {
-            find_collisions(frame, options);
-        } else {
-            const Input input(run_.inputs.first.frame(frame),
-                              run_.join() ? std::optional(run_.inputs.second.frame(frame)) : std::nullopt);
-            const Summary summary = engine_->stream_pairs(input, pair_sink(), options, run_.stop);
-            run_.report.add(summary, written());
-        }
+        const Input input(run_.inputs.first.frame(frame),
+                          run_.join() ? std::optional(run_.inputs.second.frame(frame)) : std::nullopt);
+        const Summary summary = engine_->stream_pairs(input, pair_sink(), options, run_.stop);
+        run_.report.add(summary, run_.report.seconds.write - written_before);
     }
 
 #ifdef OCTOPAIR_WITH_PIPELINE
@@ -84,8 +81,10 @@ private:
         if (!check) return;
         const Timed timed(run_.report.seconds.verify);
         run_.progress.show("verifying", 0);
-        const StageCheck::Result result = check->finish(filters_->excluded(*engine_, frame));
+        const std::vector<Pair> excluded = filters_->excluded(*engine_, frame);
+        const StageCheck::Result result = check->finish(excluded);
         run_.report.collisions_verified = result.judged;
+        if (!excluded.empty()) run_.report.add_not_checked("exclusion rules");
         for (const std::string& what : result.not_checked) run_.report.add_not_checked(what);
     }
 #else

@@ -13,9 +13,10 @@ namespace octopair::certificate {
 struct Decision {
     /// Largest errors that the narrow phase may make.
     struct Accuracy {
-        Real place;    ///< of a point, and of the decision whether objects meet
-        Real length;   ///< of a depth or a distance
-        Real contact;  ///< of a contact point of curved shapes
+        Real position;  ///< of a point, and of the decision whether objects meet
+        Real margin;    ///< of the distance up to which pairs are kept
+        Real length;    ///< of a depth or a distance
+        Real contact;   ///< of a contact point of curved shapes
     };
 
     const StageRules& rules;
@@ -31,8 +32,16 @@ struct Decision {
     bool contradicts(Real least) const;
 };
 
-/// Judges what bounds on the distance of two objects allow. Returns what is wrong; empty: nothing.
+// Functions that return a text describe a fault; an empty text: there is none.
+
+/// Judges what bounds on the distance of two objects allow.
 std::string judge_distance(const Decision& decision, Real lower, Real upper);
+/// Judges whether the nearest points are as far apart as the distance says. Requires: the class is `clearance`.
+std::string judge_nearest_points(const Decision& decision);
+/// Returns a lower bound on the distance of a point from a body: their distance, or a number above `limit`.
+Real least_distance(const Point3d& point, const ConvexBody& body, Real limit);
+/// Returns whether all numbers of a finding are finite.
+bool is_finite(const Finding& finding);
 
 /// Judges two convex objects. `directions`: those in which a contained object is compared with the other one.
 PairVerdict judge_convex(const ConvexBody& a, const ConvexBody& b, const std::vector<Vector>& directions,
@@ -41,7 +50,7 @@ PairVerdict judge_convex(const ConvexBody& a, const ConvexBody& b, const std::ve
 /// Returns directions that are spread over the sphere, and the axes of two poses.
 std::vector<Vector> compared_directions(const Pose& a, const Pose& b);
 
-/// Returns how far `inner` sticks out of `outer` along one of the directions; at most 0: along none.
+/// Returns how far `inner` sticks out of `outer` along one of the directions; 0 or less: along none.
 Real sticks_out(const ConvexBody& inner, const ConvexBody& outer, const std::vector<Vector>& directions);
 
 /// Returns a number for a message, such as "0.25".

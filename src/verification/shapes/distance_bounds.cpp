@@ -160,7 +160,8 @@ struct Goal {
     Real accuracy, enough;
 };
 
-/// As the public function. `around` gets the corners of a tetrahedron around the origin, if the search ends with one.
+/// Bounds the distance. `around` gets the corners of a tetrahedron around the origin of the difference, if the search ends with one: then
+/// the bodies overlap.
 DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, const Goal& goal,
                               std::vector<Difference>& around) {
     // Not along an axis, because symmetric bodies would yield flat simplices.

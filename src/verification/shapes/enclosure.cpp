@@ -23,21 +23,6 @@ struct InOrder {
     }
 };
 
-/// Returns whether each edge is in as many triangles of one direction as of the other.
-bool is_turned_alike(const std::vector<Triangle>& mesh) {
-    std::map<std::pair<Vector, Vector>, int, InOrder> edges;
-    for (const Triangle& triangle : mesh) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Vector &from = triangle[i], &to = triangle[(i + 1) % 3];
-            InOrder()(from, to) ? ++edges[{from, to}] : --edges[{to, from}];
-        }
-    }
-    return std::ranges::all_of(edges, [](const auto& edge) {
-        const auto& [from, to] = edge.first;
-        return edge.second == 0 || InOrder::key(from) == InOrder::key(to);
-    });
-}
-
 /// Returns how often a surface winds around a point, by the solid angles of its triangles.
 Real winding_number(const std::vector<Triangle>& mesh, const Vector& point) {
     Real sum = 0;
@@ -51,43 +36,56 @@ Real winding_number(const std::vector<Triangle>& mesh, const Vector& point) {
 
 }  // namespace
 
-std::vector<Vector> points_of_parts(const std::vector<Triangle>& mesh) {
+bool is_closed(const std::vector<Triangle>& mesh) {
+    std::map<std::pair<Vector, Vector>, int, InOrder> edges;
+    for (const Triangle& triangle : mesh) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vector &from = triangle[i], &to = triangle[(i + 1) % 3];
+            InOrder()(from, to) ? ++edges[{from, to}] : --edges[{to, from}];
+        }
+    }
+    return std::ranges::all_of(edges, [](const auto& edge) {
+        const auto& [from, to] = edge.first;
+        return edge.second == 0 || InOrder::key(from) == InOrder::key(to);
+    });
+}
+
+std::vector<std::size_t> parts_of(const std::vector<Triangle>& mesh) {
     std::map<Vector, std::size_t, InOrder> numbers;
-    std::vector<Vector> corners;
-    std::vector<std::size_t> parents;
+    std::vector<std::size_t> triangles, parents;  // by corner: a triangle that has it, and a corner of the same part
+    std::size_t triangle = 0;
     const auto number_of = [&](const Vector& corner) {
-        const auto [at, is_new] = numbers.emplace(corner, corners.size());
-        if (is_new) corners.push_back(corner), parents.push_back(at->second);
+        const auto [at, is_new] = numbers.emplace(corner, parents.size());
+        if (is_new) triangles.push_back(triangle), parents.push_back(at->second);
         return at->second;
     };
     const auto root_of = [&](std::size_t corner) {
         while (parents[corner] != corner) corner = parents[corner] = parents[parents[corner]];
         return corner;
     };
-    for (const Triangle& triangle : mesh) {
-        const std::size_t first = root_of(number_of(triangle[0]));
-        parents[root_of(number_of(triangle[1]))] = first;
-        parents[root_of(number_of(triangle[2]))] = first;
+    for (; triangle < mesh.size(); ++triangle) {
+        const std::size_t first = root_of(number_of(mesh[triangle][0]));
+        parents[root_of(number_of(mesh[triangle][1]))] = first;
+        parents[root_of(number_of(mesh[triangle][2]))] = first;
     }
-    std::vector<Vector> points;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        if (parents[i] == i) points.push_back(corners[i]);
+    std::vector<std::size_t> parts;
+    for (std::size_t corner = 0; corner < parents.size(); ++corner) {
+        if (parents[corner] == corner) parts.push_back(triangles[corner]);
     }
-    return points;
+    return parts;
 }
 
-Place place_in(const std::vector<Triangle>& mesh, const std::vector<Vector>& points) {
-    Place place;
-    if (!is_turned_alike(mesh)) return place;
+Enclosure enclosure_in(const std::vector<Triangle>& mesh, const std::vector<Vector>& points) {
+    Enclosure enclosure{.is_known = points.size() <= max_points};
     std::size_t outside = 0;
     for (std::size_t i = 0; i < std::min(points.size(), max_points); ++i) {
         const Real winding = std::abs(winding_number(mesh, points[i]));
-        place.any_inside |= std::abs(winding - 1) < 0.01L;
+        enclosure.any_inside |= std::abs(winding - 1) < 0.01L;
         outside += winding < 0.01L ? 1 : 0;
     }
-    place.any_outside = outside > 0;
-    place.all_outside = outside == points.size();
-    return place;
+    enclosure.any_outside = outside > 0;
+    enclosure.all_outside = outside == points.size();
+    return enclosure;
 }
 
 }  // namespace octopair::certificate

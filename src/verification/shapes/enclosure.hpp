@@ -1,26 +1,32 @@
 // Whether points are inside a mesh, by winding numbers.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include "verification/shapes/mesh_verdict.hpp"
 
 namespace octopair::certificate {
 
-/// Where an object is whose surface does not meet that of another object.
-struct Place {
-    bool any_inside = false;   ///< a part of the object is certainly inside
-    bool any_outside = false;  ///< a part of the object is certainly outside
-    bool all_outside = false;  ///< all parts of the object are certainly outside
+/// Where the parts of an object are, relative to another object whose surface they do not meet.
+struct Enclosure {
+    bool is_known = false;     ///< false: the other object is an open mesh, or there are too many parts to test all
+    bool any_inside = false;   ///< a part is certainly inside
+    bool any_outside = false;  ///< a part is certainly outside
+    bool all_outside = false;  ///< all parts are certainly outside
 };
 
-/// Returns one point of each connected part of a mesh. Parts are connected by corners in equal places.
-std::vector<Vector> points_of_parts(const std::vector<Triangle>& mesh);
+// The coordinates of the next two functions are those of the mesh before it is moved, because a motion rounds places: it may close a gap.
 
-/// Returns where the parts of an object are that have these points. Nothing is certain if an edge of the mesh is not in as many triangles
-/// of one direction as of the other: then the mesh is not closed, or its triangles are not turned alike.
-/// Complexity: O(n log n + p n) for p points, of which at most 64 are tested.
-Place place_in(const std::vector<Triangle>& mesh, const std::vector<Vector>& points);
+/// Returns whether each edge of a mesh is in as many triangles of one direction as of the other: then the mesh is closed, and its triangles
+/// are consistently oriented. Complexity: O(n log n).
+bool is_closed(const std::vector<Triangle>& mesh);
+
+/// Returns the number of one triangle of each connected part of a mesh. Parts are connected by corners in equal places.
+std::vector<std::size_t> parts_of(const std::vector<Triangle>& mesh);
+
+/// Returns where the parts of an object are, given one point of each, relative to a closed mesh.
+/// Complexity: O(p n) for p points, of which at most 64 are tested.
+Enclosure enclosure_in(const std::vector<Triangle>& mesh, const std::vector<Vector>& points);
 
 }  // namespace octopair::certificate

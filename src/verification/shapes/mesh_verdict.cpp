@@ -87,12 +87,24 @@ struct Side {
     ConvexBody solid() const { return {object.geometry.shape(), object.pose}; }
     /// Returns one point of each connected part.
     std::vector<Vector> points_of_parts() const {
-        return is_solid() ? std::vector{solid().support({1, 0, 0})} : certificate::points_of_parts(triangles);
+        if (is_solid()) return {solid().support({1, 0, 0})};
+        std::vector<Vector> points;
+        for (const std::size_t triangle : parts_of(local_triangles_of(object)))
+            points.push_back(triangles[triangle][0]);
+        return points;
     }
     /// Returns where the other object is. Requires: the surfaces do not meet.
-    Place place_of(const Side& other) const {
-        if (is_solid()) return {false, true, true};  // otherwise a triangle would be in the solid
-        return place_in(triangles, other.points_of_parts());
+    Enclosure enclosure_of(const Side& other) const {
+        // A triangle within the solid would meet it.
+        if (is_solid()) return {.is_known = true, .any_outside = true, .all_outside = true};
+        if (!is_closed(local_triangles_of(object))) return {};
+        return enclosure_in(triangles, other.points_of_parts());
+    }
+
+    /// Returns a lower bound on the distance of a point from the surface or the solid.
+    Real least_distance(const Point3d& point, Real limit) const {
+        return is_solid() ? certificate::least_distance(point, solid(), limit)
+                          : certificate::least_distance(point, triangles, limit);
     }
 
     const JudgedObject& object;
@@ -109,12 +121,12 @@ struct Surface {
             boxes = side.boxes;
             return;
         }
-        const Box3d place = joined(other.boxes);
+        const Box3d bounds = joined(other.boxes);
         for (std::size_t i = 0; i < side.triangles.size(); ++i) {
             const Box3d& box = side.boxes[i];
             bool is_near = true;
             for (std::size_t axis = 0; axis < 3; ++axis)
-                is_near &= box.min[axis] <= place.max[axis] + reach && place.min[axis] <= box.max[axis] + reach;
+                is_near &= box.min[axis] <= bounds.max[axis] + reach && bounds.min[axis] <= box.max[axis] + reach;
             if (!is_near) continue;
             const Triangle& triangle = side.triangles[i];
             triangles.push_back(triangle);
@@ -130,7 +142,7 @@ struct Surface {
 
 /// Bounds on the distance of two surfaces.
 struct SurfaceBounds {
-    Real lower = std::numeric_limits<Real>::infinity(), upper = std::numeric_limits<Real>::infinity();
+    Real lower = 0, upper = std::numeric_limits<Real>::infinity();
     bool meet = false;     ///< two triangles certainly cross, or a triangle certainly reaches into the solid
     bool complete = true;  ///< false: there were too many near triangles
 };
@@ -142,25 +154,26 @@ public:
 
     PairVerdict judge() const {
         const Real distance = decision_.finding != nullptr ? Real(decision_.finding->distance) : Real(0);
-        if (!std::isfinite(distance)) return {"its distance is not finite"};
         const SurfaceBounds bounds = bound_surfaces(std::max(decision_.reach, distance) + decision_.accuracy.length);
         if (!bounds.complete) return {"", "pairs of meshes with more than 200,000 pairs of near triangles"};
-        if (bounds.lower > decision_.accuracy.place) return {judge_apart(bounds), not_checked()};
-        if (bounds.meet) return {judge_meeting(), not_checked()};
-        const bool is_distance_known = decision_.found() == CollisionClass::clearance;
-        return {is_distance_known ? judge_distance(decision_, bounds.lower, bounds.upper) : "",
-                "meshes that touch within rounding"};
+        if (bounds.lower > decision_.accuracy.position) return judge_apart(bounds);
+        if (bounds.meet) return {judge_meeting(), features_not_checked()};
+        return {decision_.says_meet() ? "" : judge_clearance(bounds), "meshes that touch within rounding"};
     }
 
 private:
-    const char* not_checked() const {
-        return decision_.says_meet() && decision_.rules.features ? "depths and contacts of meshes" : nullptr;
+    /// Returns what no certificate judges; null: nothing is left out.
+    const char* features_not_checked() const {
+        const bool has_features = decision_.rules.features && (decision_.says_meet() || may_be_shallow());
+        return has_features ? "depths and contacts of meshes" : nullptr;
     }
     bool may_be_shallow() const { return decision_.was_dropped() && decision_.rules.min_depth; }
     bool is_touching() const { return decision_.found() == CollisionClass::touching && decision_.rules.tolerance == 0; }
 
+    /// Bounds the distance of the surfaces; the lower bound is at most `reach`.
     SurfaceBounds bound_surfaces(Real reach) const {
         SurfaceBounds bounds;
+        bounds.lower = reach;  // of all triangles that are not compared
         const Surface a(first_, second_, double(reach)), b(second_, first_, double(reach));
         if (a.bodies.empty() || b.bodies.empty()) return bounds;
         Team alone(1);
@@ -175,11 +188,11 @@ private:
             bounds.complete = compared <= max_near_triangles;
             if (!bounds.complete) return bounds;
             for (const std::uint32_t k : columns) {
-                const DistanceBounds two = bound_distance(a.bodies[i], b.bodies[k], decision_.accuracy.place / 16,
+                const DistanceBounds two = bound_distance(a.bodies[i], b.bodies[k], decision_.accuracy.position / 16,
                                                           std::min(bounds.upper, reach));
                 bounds.lower = std::min(bounds.lower, two.lower);
                 bounds.upper = std::min(bounds.upper, two.upper);
-                if (bounds.meet || two.upper > decision_.accuracy.place) continue;
+                if (bounds.meet || two.upper > decision_.accuracy.position) continue;
                 const bool has_solid = first_.is_solid() || second_.is_solid();
                 bounds.meet =
                     has_solid ? overlap(a.bodies[i], b.bodies[k]) : cross_each_other(a.triangles[i], b.triangles[k]);
@@ -195,19 +208,34 @@ private:
     }
 
     /// Judges objects whose surfaces are certainly apart.
-    std::string judge_apart(const SurfaceBounds& bounds) const {
-        const Place a = second_.place_of(first_), b = first_.place_of(second_);
+    PairVerdict judge_apart(const SurfaceBounds& bounds) const {
+        const Enclosure a = second_.enclosure_of(first_), b = first_.enclosure_of(second_);
         const bool are_apart = a.all_outside && b.all_outside;
-        if (decision_.says_meet()) {
-            if (decision_.found() == CollisionClass::contained && a.any_outside && b.any_outside)
-                return "it is contained, but a part of each object is outside the other one";
-            if (are_apart)
-                return "the objects do not meet: their surfaces are at least " + text_of(bounds.lower) + " apart";
-            if (!is_touching()) return {};
-            return "it is touching, but the surfaces are at least " + text_of(bounds.lower) + " apart";
+        const std::string gap = "their surfaces are at least " + text_of(bounds.lower) + " apart";
+        if (!decision_.says_meet()) {
+            if ((a.any_inside || b.any_inside) && !may_be_shallow())
+                return {"a part of one object is inside the other one"};
+            // Of an object within another one, the depth decides.
+            if (may_be_shallow() && !are_apart) return {"", features_not_checked()};
+            return {judge_clearance(bounds), features_not_checked()};
         }
-        if ((a.any_inside || b.any_inside) && !may_be_shallow()) return "a part of one object is inside the other one";
-        return are_apart ? judge_distance(decision_, bounds.lower, bounds.upper) : "";
+        if (decision_.found() == CollisionClass::contained && a.any_outside && b.any_outside)
+            return {"it is contained, but a part of each object is outside the other one"};
+        if (are_apart) return {"the objects do not meet: " + gap};
+        if (is_touching()) return {"it is touching, but " + gap};
+        const bool is_known = a.is_known && b.is_known;
+        return {"", is_known ? features_not_checked() : "containment in open meshes and in those of many parts"};
+    }
+
+    /// Judges objects that do not meet, or that were dropped.
+    std::string judge_clearance(const SurfaceBounds& bounds) const {
+        std::string fault = judge_distance(decision_, bounds.lower, bounds.upper);
+        if (!fault.empty() || decision_.was_dropped()) return fault;
+        const auto& [first, second] = decision_.finding->nearest;
+        const Real limit = decision_.accuracy.length;
+        const Real outside = std::max(first_.least_distance(first, limit), second_.least_distance(second, limit));
+        if (outside > limit) return "a nearest point is at least " + text_of(outside) + " outside its object";
+        return judge_nearest_points(decision_);
     }
 
     /// Judges objects whose surfaces certainly meet.
@@ -226,10 +254,10 @@ private:
         const ConvexBody outer = solid.solid();
         const std::vector<Vector> directions = compared_directions(pair_.a.pose, pair_.b.pose);
         for (const Triangle& triangle : mesh.triangles) {
-            const Real out = sticks_out(ConvexBody({triangle.begin(), triangle.end()}), outer, directions);
-            if (out > decision_.accuracy.place)
-                return "it is contained, but the solid meets the mesh, and a triangle sticks out of it by " +
-                       text_of(out);
+            const Real outside = sticks_out(ConvexBody({triangle.begin(), triangle.end()}), outer, directions);
+            if (outside > decision_.accuracy.position)
+                return "it is contained, but the solid meets the mesh, and a triangle sticks out of it by at least " +
+                       text_of(outside);
         }
         return {};
     }
@@ -240,17 +268,42 @@ private:
     const std::stop_token& stop_;
 };
 
-}  // namespace
-
-std::vector<Triangle> triangles_of(const JudgedObject& object) {
+/// Returns the triangles of a mesh with moved(vertex) in place of each vertex; none if the object is not a mesh.
+template <typename Move>
+std::vector<Triangle> moved_triangles(const JudgedObject& object, Move&& moved) {
     std::vector<Triangle> triangles;
     const auto* const mesh = std::get_if<shape::Mesh>(&object.geometry.shape());
     if (mesh == nullptr) return triangles;
     for (const auto& corners : mesh->triangles) {
-        const auto corner = [&](std::size_t i) { return moved_vertex(object.pose, mesh->vertices[corners[i]]); };
+        const auto corner = [&](std::size_t i) { return moved(mesh->vertices[corners[i]]); };
         triangles.push_back({corner(0), corner(1), corner(2)});
     }
     return triangles;
+}
+
+}  // namespace
+
+std::vector<Triangle> triangles_of(const JudgedObject& object) {
+    return moved_triangles(object, [&](const Point3d& vertex) { return moved_vertex(object.pose, vertex); });
+}
+
+std::vector<Triangle> local_triangles_of(const JudgedObject& object) { return moved_triangles(object, vector_of); }
+
+Real least_distance(const Point3d& point, const std::vector<Triangle>& triangles, Real limit) {
+    const Vector position = vector_of(point);
+    Real least = std::numeric_limits<Real>::infinity();
+    for (const Triangle& triangle : triangles) {
+        const Box3d box = box_of(triangle);
+        Real apart = 0;  // from the box, along an axis
+        for (const auto& [at, axis] : {std::pair(position.x, 0), {position.y, 1}, {position.z, 2}})
+            apart = std::max({apart, box.min[axis] - at, at - box.max[axis]});
+        if (apart > limit) {
+            least = std::min(least, apart);
+            continue;
+        }
+        least = std::min(least, least_distance(point, ConvexBody({triangle.begin(), triangle.end()}), limit));
+    }
+    return least;
 }
 
 PairVerdict judge_meshes(const JudgedPair& pair, const Decision& decision, const std::stop_token& stop) {

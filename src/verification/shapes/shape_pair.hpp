@@ -1,14 +1,5 @@
-// judge_pair(): checks the decision of the narrow phase about one pair of objects by certificates.
-//
-// Certificates
-//   two points, one of each object        upper bound on the distance
-//   two parallel planes between objects   lower bound on the distance
-//   a direction                           upper bound on the depth: the overlap along the direction
-//   a polytope in the difference          lower bound on the depth: the distance from the origin to its nearest face
-//   a direction                           lower bound on how far an object sticks out of another one
-//   a segment that crosses a triangle     two surfaces pass through each other
-//
-// A certificate can prove a decision wrong. docs/design.md ("Certificates") lists which decisions have none.
+// judge_pair(): checks the decision of the narrow phase about one pair of objects by certificates. docs/design.md ("Certificates") lists
+// them, and the decisions that have none.
 #pragma once
 
 #include <cstdint>
@@ -41,9 +32,9 @@ struct JudgedPair {
 };
 
 struct PairVerdict {
-    /// What is wrong, for users; empty: no certificate contradicts the decision.
+    /// Describes to users what is wrong; empty: no certificate contradicts the decision.
     std::string fault;
-    /// What was not checked; null: all was.
+    /// Describes to users what no certificate judges; null: all was judged.
     const char* not_checked = nullptr;
 };
 

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <utility>
 
+#include "base/stop.hpp"
 #include "parallel/team.hpp"
 #include "verification/pair_fault.hpp"
 #include "verification/row_pass.hpp"
@@ -61,10 +62,13 @@ StageCheck::Result StageCheck::finish() {
     const RowPass pass(rows, team, setup_.stop, no_progress);
     std::mutex mutex;
     Result result;
-    const ResultFault fault = pass.run({0, rows.rows()}, Columns::ascending, [&](std::uint32_t a, auto columns) {
+    // A certificate takes microseconds to seconds, so threads take few rows at a time.
+    const RowRange all{.end = rows.rows(), .block = 4};
+    const ResultFault fault = pass.run(all, Columns::ascending, [&](std::uint32_t a, auto columns) {
         std::set<std::string> reasons;
         ResultFault wrong;
         for (auto b = columns.begin(); b != columns.end() && !wrong; ++b) {
+            throw_if_stopped(setup_.stop);
             const std::string text = judge({a, *b}, reasons);
             if (!text.empty()) wrong = name_of_pair({a, *b}) + ": " + text;
         }

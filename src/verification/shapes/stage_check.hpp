@@ -2,7 +2,7 @@
 //
 // Result    Each pair of boxes, found anew by the second algorithm (row_search.hpp), must be a collision with a finding that no
 //           certificate contradicts, or must rightly have been dropped (shape_pair.hpp). Each collision must be a pair of boxes.
-// Memory    about 400 bytes per collision and 80 per contact, and 8 bytes per pair that was excluded.
+// Memory    about 400 bytes per collision and 80 per contact, and 8 bytes per pair that exclusion rules leave out.
 #pragma once
 
 #include <cstdint>
