@@ -25,11 +25,13 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
     const test::TuningScope tuning(default_tuning);  // restores the tuning that the histories change
 #endif
     const auto families = test::family_names();
-    // A fifth of the number of large scenes; in long runs as many. The environment can set another number of cases.
+    // A fifth of the number of large scenes, because a history takes as long as five of them; in long runs as many as there are scenes. The
+    // environment can set another number of cases.
+    constexpr std::uint64_t long_run = 1000;
     const std::uint64_t scenes = test::scene_range(test::SceneSize::large, 20).size();
-    const std::uint64_t count = test::case_count(scenes < 1000 ? scenes / 5 : scenes);
+    const std::uint64_t count = test::case_count(scenes < long_run ? scenes / 5 : scenes);
     const std::uint64_t max_tried = 4 * count;
-    std::uint64_t done = 0, full_steps = 0, partial_steps = 0;
+    std::uint64_t done = 0, full_steps = 0, partial_steps = 0, failures = 0;
     for (std::uint64_t i = 0; i < max_tried && done < count; ++i) {
         const std::uint64_t seed = test::case_seed("large histories", i);
         const std::string& family = families[seed % families.size()];
@@ -41,12 +43,15 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
         ++done;
         full_steps += history.full_steps();
         partial_steps += history.partial_steps();
+        const FailingScene::Failures failed = history.failures();
+        failures += failed.allocations + failed.refusals + failed.stops;
     }
     std::printf("%llu histories, %llu full steps, %llu partial steps\n", static_cast<unsigned long long>(done),
                 static_cast<unsigned long long>(full_steps), static_cast<unsigned long long>(partial_steps));
     if (count < 4) return;
     EXPECT_EQ(done, count);
     EXPECT_GT(full_steps, 0U);
+    EXPECT_GT(failures, 0U);
     // Without test hooks a scene chooses by measured times.
     EXPECT_TRUE(partial_steps > 0 || !has_test_hooks);
 }

@@ -108,6 +108,12 @@ std::string LargeHistory::describe() const {
     return text.str();
 }
 
+FailingScene::Failures LargeHistory::failures() const {
+    FailingScene::Failures failures;
+    for (const JudgedScene& judged : scenes_) failures.add(judged.scene.failures());
+    return failures;
+}
+
 std::optional<Finding> LargeHistory::run() {
     for (int step = 0; step < steps && !too_many_; ++step) {
         const auto found = [&](const std::string& check, const std::string& text) {

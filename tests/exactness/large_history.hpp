@@ -38,6 +38,8 @@ public:
     std::string describe() const;
     std::uint64_t full_steps() const { return full_steps_; }
     std::uint64_t partial_steps() const { return partial_steps_; }
+    /// Returns the numbers of calls that failed, in all scenes.
+    FailingScene::Failures failures() const;
 
 private:
     struct Object {

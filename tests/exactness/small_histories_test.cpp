@@ -39,6 +39,7 @@ TEST_P(SmallHistories, AreWhatBruteForceFinds) {
     const std::uint64_t scenes = test::scene_range(test::SceneSize::small, 10'000).size();
     const std::uint64_t count = test::case_count(std::max<std::uint64_t>(1, usual_histories * scenes / 10'000));
     const test::SceneRange part = test::SceneRange{0, count}.part(GetParam(), history_parts);
+    FailingScene::Failures failures;
     for (std::uint64_t i = part.begin; i < part.end; ++i) {
         const std::uint64_t seed = test::case_seed("small histories", i);
         samples::RandomStream random(seed, 2);
@@ -55,8 +56,10 @@ TEST_P(SmallHistories, AreWhatBruteForceFinds) {
             FAIL() << error.what();  // the trace names the history
         }
         if (HasFatalFailure()) return;
+        failures.add(history.scene().failures());
     }
     if (part.size() < usual_histories / history_parts) return;
+    failures.expect_each();
     using enum Path;
     EXPECT_EQ(
         test::paths_not_taken({change_listed, change_alone, change_joined, run_stopped, unit_in_cell, unit_of_leaf,

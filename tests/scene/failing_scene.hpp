@@ -29,6 +29,18 @@ public:
     /// Numbers of calls that failed, by their cause.
     struct Failures {
         std::uint64_t allocations = 0, refusals = 0, stops = 0;
+
+        void add(const Failures& other) {
+            allocations += other.allocations;
+            refusals += other.refusals;
+            stops += other.stops;
+        }
+        /// Tests that calls failed by each cause.
+        void expect_each() const {
+            EXPECT_GT(allocations, 0U);
+            EXPECT_GT(refusals, 0U);
+            EXPECT_GT(stops, 0U);
+        }
     };
 
     FailingScene() = default;
@@ -105,7 +117,7 @@ private:
     struct Refusal {
         std::int64_t left = -1;
     };
-    /// What a failed call must not change.
+    /// Objects and boxes, which a failed call must not change.
     struct Contents {
         std::uint64_t size, indices;
         std::vector<bool> exists;

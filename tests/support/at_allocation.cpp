@@ -16,6 +16,7 @@ namespace octopair::test {
 namespace {
 
 std::atomic<bool> armed = false;
+std::atomic<int> inside = 0;  // number of threads that read what follows
 std::atomic<std::int64_t> allocations_left = 0;
 // These change only while not armed.
 std::function<void()> at_last;
@@ -39,7 +40,12 @@ bool counts(const void* code) {
 
 /// Called before each allocation. `caller`: return address of the allocation. Throws: what the action throws.
 void before_allocation(const void* caller) {
-    if (!armed.load(std::memory_order_acquire) || !counts(caller)) return;
+    if (!armed) return;
+    const struct Inside {
+        Inside() { ++inside; }
+        ~Inside() { --inside; }
+    } now;
+    if (!armed || !counts(caller)) return;
     if (only_thread != std::thread::id() && only_thread != std::this_thread::get_id()) return;
     if (allocations_left.fetch_sub(1, std::memory_order_relaxed) == 0) at_last();
 }
@@ -50,13 +56,16 @@ AtAllocation::AtAllocation(std::uint64_t number, std::function<void()> action, T
     at_last = std::move(action);
     only_thread = threads == Threads::this_one ? std::this_thread::get_id() : std::thread::id();
     allocations_left = std::int64_t(number);
-    armed.store(true, std::memory_order_release);
+    armed = true;
 }
 
-AtAllocation::~AtAllocation() { armed = false; }
+AtAllocation::~AtAllocation() {
+    armed = false;
+    while (inside != 0) std::this_thread::yield();
+}
 
 AtAllocation::Paused::Paused() : armed_(armed.exchange(false)) {}
-AtAllocation::Paused::~Paused() { armed.store(armed_, std::memory_order_release); }
+AtAllocation::Paused::~Paused() { armed = armed_; }
 
 bool AtAllocation::reached() const { return allocations_left < 0; }
 
