@@ -56,12 +56,12 @@ class Source:
 
 
 def read_sources(report, root):
-    """Returns the sources of the checkout in a report of llvm-cov by their paths below ROOT."""
+    """Returns the sources of the library, the program and the Python package in a report of llvm-cov, by their paths below ROOT."""
     sources = {}
     for data in report["data"]:
         for file in data["files"]:
             path = pathlib.Path(file["filename"])
-            if path.is_relative_to(root):
+            if path.is_relative_to(root) and path.relative_to(root).parts[0] in ("src", "python", "c"):
                 sources[str(path.relative_to(root))] = Source(path.read_text(), file["segments"])
     return sources
 
@@ -71,7 +71,7 @@ def main(words):
         sys.exit("unreached_failures.py ROOT LIST")
     root = pathlib.Path(words[0]).resolve()
     listed = {(match[1], match[2]) for line in pathlib.Path(words[1]).read_text().splitlines() if (match := ENTRY.match(line))}
-    sources = {path: source for path, source in read_sources(json.load(sys.stdin), root).items() if path.split("/")[0] in ("src", "python", "c")}
+    sources = read_sources(json.load(sys.stdin), root)
     functions = sorted({match[1] for source in sources.values() for match in NORETURN.finditer(source.code)})
     unreached = collections.defaultdict(set)
     failures = missed = 0
