@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/executor_work_guard.hpp>
@@ -16,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "viewer/server/connection.hpp"
 #include "viewer/server/messages.hpp"
@@ -172,10 +172,10 @@ private:
     std::uint16_t open(const PageServerOptions& options) {
         const Tcp::endpoint endpoint = endpoint_of(options);
         boost::system::error_code error;
-        Descriptor socket(::socket(endpoint.protocol().family(), SOCK_STREAM | socket_flags, 0));
-        if (!socket.open()) error.assign(errno, boost::system::system_category());
-        if (!error) acceptor_.assign(endpoint.protocol(), socket.number(), error);
-        if (!error) (void)socket.release();  // the acceptor owns it
+        const int socket = ::socket(endpoint.protocol().family(), SOCK_STREAM | socket_flags, 0);
+        if (socket < 0) error.assign(errno, boost::system::system_category());
+        if (!error) acceptor_.assign(endpoint.protocol(), socket, error);
+        if (error && socket >= 0) ::close(socket);
         if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
         if (!error) acceptor_.bind(endpoint, error);
         if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
@@ -198,16 +198,18 @@ private:
     /// Accepts the connections that wait. Returns false if one cannot be accepted, for example because the process has too many open files.
     bool accept_waiting() {
         for (;;) {
-            Descriptor connection(::accept4(acceptor_.native_handle(), nullptr, nullptr, socket_flags));
-            if (!connection.open()) {
+            const int connection = ::accept4(acceptor_.native_handle(), nullptr, nullptr, socket_flags);
+            if (connection < 0) {
                 if (errno == EINTR || errno == ECONNABORTED) continue;
                 return errno == EAGAIN;
             }
             boost::system::error_code error;
             Tcp::socket socket(io_);
-            socket.assign(acceptor_.local_endpoint().protocol(), connection.number(), error);
-            if (error) return false;
-            (void)connection.release();  // the socket owns it
+            socket.assign(endpoint_of(options_).protocol(), connection, error);
+            if (error) {
+                ::close(connection);
+                return false;
+            }
             if (accepts(socket)) serve_connection(std::move(socket), *this);
         }
     }
