@@ -206,7 +206,7 @@ void prove_by_faces(const LocalConvexPair& pair, std::span<const Vertex> vertice
 }
 
 /// A proof that the objects are apart, and the vertices of the difference that determine its direction.
-struct Separation {
+struct ProvenDirection {
     Proof proof;
     std::array<Vertex, 3> vertices = {};
     std::size_t count = 0;
@@ -217,7 +217,7 @@ struct Separation {
 /// If one object is much larger than the other one, the difference of the objects has vertices near the origin and far ones. Then rounding at
 /// the far ones may end the search for the distance before the near ones are right. Whether a direction proves the objects apart does not
 /// depend on how far a vertex is. So this search is GJK with all vertices moved to the unit sphere.
-std::optional<Separation> search_directions(const LocalConvexPair& pair, const Simplex& simplex) {
+std::optional<ProvenDirection> search_directions(const LocalConvexPair& pair, const Simplex& simplex) {
     constexpr int max_steps = 64;
     constexpr double rounding = 1e-12;
     const auto on_sphere = [](Vertex vertex) {
@@ -230,7 +230,7 @@ std::optional<Separation> search_directions(const LocalConvexPair& pair, const S
     for (int step = 0; step < max_steps; ++step) {
         const double length = vector::length(units.nearest());
         if (units.encloses() || !(length > rounding)) return {};
-        Separation found;
+        ProvenDirection found;
         const Vertex next = found.proof.try_direction(pair, units.direction());
         if (found.proof.at_least > 0) {
             for (Vertex vertex : units.vertices()) {
