@@ -215,7 +215,7 @@ private:
         if (!decision_.says_meet()) {
             if ((a.any_inside || b.any_inside) && !may_be_shallow())
                 return {"a part of one object is inside the other one"};
-            // Of an object within another one, the depth decides.
+            // The pair may have been dropped because of the depth of an object within the other one, which no certificate judges.
             if (may_be_shallow() && !are_apart) return {"", features_not_checked()};
             return {judge_clearance(bounds), features_not_checked()};
         }
