@@ -3,8 +3,8 @@
 
     llvm-cov export -skip-functions -skip-expansions ... | unreached_failures.py ROOT LIST
 
-A failure is a `throw`, a call of a function that is [[noreturn]], or a block of `catch`. ROOT is the checkout. LIST is a page with the
-failures that no test can reach or need reach, one in a line of the form "- `FILE`: `CODE`", where CODE is the line of the source. Prints
+A failure is a `throw`, a call of a function that is [[noreturn]], or a block of `catch`. ROOT is the checkout. LIST is a page with
+the failures to leave out, one in a line of the form "- `FILE`: `CODE`", where CODE is the line of the source. Prints
 the others as FILE:LINE: CODE, then the entries of LIST that are out of date, because a test reaches the failure or the line is gone. The
 exit status is 1 if there are any.
 """

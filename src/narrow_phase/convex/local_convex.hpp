@@ -70,8 +70,8 @@ private:
 /// Bounds on the distance of two cores, and two points that are `at_most` apart.
 struct CoreGap {
     double at_most = 0, at_least = 0;
-    Point3d direction =
-        {};  ///< unit vector from b to a that proves `at_least`, if that is above 0; more accurate than on_a - on_b
+    /// Unit vector from b to a that proves `at_least`, if that is above 0. More accurate than on_a - on_b.
+    Point3d direction = {};
     Point3d on_a = {}, on_b = {};
 };
 
