@@ -104,9 +104,25 @@ TEST_F(RankErrors, RefuseCallsThatDiffer) {
     expect_on_all(ErrorCode::usage, "the number of sets", [&] {
         last() ? (void)engine_->count_pairs(own()) : (void)engine_->count_pairs(Join{own(), own()});
     });
-    expect_on_all(ErrorCode::usage, "count, list or stream", [&] {
+    expect_on_all(ErrorCode::usage, "count, list, stream", [&] {
         PairList list;
         last() ? (void)engine_->count_pairs(own()) : (void)engine_->find_pairs(own(), list);
+    });
+    expect_on_all(ErrorCode::usage, "64-bit indices", [&] {
+        PairList list;
+        std::vector<Pair64> pairs;
+        last() ? (void)engine_->find_pairs(own(), list)
+               : (void)find_pairs64(*engine_, IndexedObjects{own(), {}}, pairs);
+    });
+    expect_on_all(ErrorCode::usage, "gather_pairs or a search", [&] {
+        PairList list;
+        last() ? (void)engine_->find_pairs(own(), list) : gather_pairs(*engine_, list);
+    });
+    std::stop_source stopped;
+    stopped.request_stop();
+    expect_on_all(ErrorCode::usage, "gather_pairs or a search", [&] {
+        PairList list;
+        last() ? gather_pairs(*engine_, list) : (void)engine_->find_pairs(own(), list, {}, stopped.get_token());
     });
     const std::vector<Box3d> wide(3);
     expect_on_all(ErrorCode::usage, "the precision", [&] {

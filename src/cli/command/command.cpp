@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <utility>
+
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -73,6 +75,14 @@ Option Command::add_flag(const std::string& name, bool& value, const std::string
 std::optional<Option> Command::find_option(const std::string& name) const {
     CLI::Option* const option = app_->get_option_no_throw(name);
     return option == nullptr ? std::nullopt : std::optional(Option(*option));
+}
+
+std::vector<GivenOption> Command::given_options() const {
+    std::vector<GivenOption> given;
+    for (const CLI::Option* const option : std::as_const(*app_).get_options()) {
+        if (option->count() > 0) given.push_back({option->get_name(), option->results()});
+    }
+    return given;
 }
 
 CommandLine::CommandLine(const std::string& name, const std::string& description, const std::string& version)

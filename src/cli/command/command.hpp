@@ -46,6 +46,12 @@ private:
     CLI::Option* option_;
 };
 
+/// An option with a value.
+struct GivenOption {
+    std::string name;  ///< such as --margin, or that of a positional argument
+    std::vector<std::string> texts;
+};
+
 /// The program, or a subcommand. A name `--NAME` makes an option. A name without dashes makes a positional argument.
 class Command {
 public:
@@ -73,6 +79,8 @@ public:
     Option add_option(const std::string& name, const ReadTexts& read, const std::string& description);
     Option add_flag(const std::string& name, bool& value, const std::string& description);
     std::optional<Option> find_option(const std::string& name) const;
+    /// Returns the options that have values. Requires: the command line was parsed.
+    std::vector<GivenOption> given_options() const;
 
 private:
     CLI::App* app_;

@@ -15,6 +15,7 @@
 #include "cli/subcommands.hpp"
 #include "io/files/atomic_file.hpp"
 #ifdef OCTOPAIR_WITH_MPI
+#include "cli/detect/rank_facts.hpp"
 #include "cli/ranks/cluster.hpp"
 #include "engine/mpi/leading/leading.hpp"
 #endif
@@ -94,19 +95,17 @@ int find_events_on_ranks(const DetectRequest& request, Cluster& cluster, const s
 int run_on_ranks(const DetectRequest& request) {
     const Interrupt interrupt;
     Cluster cluster;
-    if (request.events) {
-        cluster.joint(check_leading_threads);
-        // All ranks end with the status of rank 0.
-        return cluster.all_gather(find_events_on_ranks(request, cluster, interrupt.token())).front();
-    }
     try {
+        cluster.require_same(option_facts(request));
+        if (request.events) {
+            cluster.joint(check_leading_threads);
+            // All ranks end with the status of rank 0.
+            return cluster.all_gather(find_events_on_ranks(request, cluster, interrupt.token())).front();
+        }
         return exit_status_of(request, detect_and_report(request, cluster, interrupt.token()));
     } catch (const Error& error) {
         if (!cluster.ends_alike()) throw;
-        if (cluster.first()) (void)fail(error);
-        // Without this barrier, mpirun may kill the first rank in the middle of its message when another rank exits.
-        cluster.together([] {});
-        return status_of(error.code());
+        return cluster.fail_together(error);
     }
 }
 #endif
@@ -126,8 +125,9 @@ void add_detect(Command& program, Action& action) {
     Command command = program.add_subcommand("detect", "find the colliding pairs of a scene");
     const auto request = std::make_shared<DetectRequest>();
     add_detect_options(command, *request);
-    command.callback([request, &action] {
+    command.callback([command, request, &action] {
         check_detect_options(*request);
+        request->given = command.given_options();
         action = [request] { return run_detect(*request); };
     });
 }

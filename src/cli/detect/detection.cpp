@@ -14,6 +14,7 @@
 #include "cli/input/shaped_set.hpp"
 #endif
 #ifdef OCTOPAIR_WITH_MPI
+#include "cli/detect/rank_facts.hpp"
 #include "cli/ranks/cluster.hpp"
 #endif
 
@@ -41,6 +42,7 @@ public:
         {
             const Timed timed(report_.seconds.total);
             group_.together([&] { read(); });
+            compare_inputs();
             make_search();
             if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
             try {
@@ -110,7 +112,17 @@ private:
         search_ = request_.engine.has_ranks() ? make_rank_search(run_, cluster()) : make_stream_search(run_);
     }
     Cluster& cluster() { return dynamic_cast<Cluster&>(group_); }
+
+    /// Ranks that read other objects would find the pairs of no scene.
+    void compare_inputs() {
+        if (!request_.engine.has_ranks()) return;
+        const Timed timed(report_.seconds.read);
+        Facts facts;
+        group_.together([&] { facts = input_facts(run_); });
+        cluster().require_same(facts);
+    }
 #else
+    void compare_inputs() {}
     void read_inputs() { inputs_.read(request_, run_.progress, run_.stop); }
     void make_search() { search_ = make_stream_search(run_); }
 #endif

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/command/command.hpp"
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/engine_choice.hpp"
 #include "cli/ranks/group.hpp"
@@ -35,6 +36,7 @@ struct DetectRequest {
     EngineChoice engine;
     std::string stats;  ///< a file, or empty
     bool quiet = false;
+    std::vector<GivenOption> given;  ///< the same options as texts, to compare those of ranks
 };
 
 /// Wall-clock seconds. `detect` excludes the time in filters and in writing; `filter` excludes the time in the search and in

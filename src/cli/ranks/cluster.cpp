@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -35,6 +36,13 @@ void Cluster::abort(int status) {
     std::abort();  // MPI_Abort is not declared [[noreturn]]
 }
 
+int Cluster::fail_together(const Error& error) {
+    if (first()) (void)fail(error);
+    // Without this barrier, mpirun may kill the first rank in the middle of its message when another rank exits.
+    together([] {});
+    return status_of(error.code());
+}
+
 void Cluster::together(const std::function<void()>& part) {
     joint([&] { Agreement(comm_).together(part); });
 }
@@ -49,6 +57,17 @@ void Cluster::joint(const std::function<void()>& part) {
 }
 
 void Cluster::refuse_object(std::uint64_t position, const std::string& message) { throw BadObject{position, message}; }
+
+void Cluster::require_same(const Facts& own) {
+    const std::string bytes = packed(own);
+    const Gathered<char> all = comm_.all_gather(std::span<const char>(bytes));
+    std::vector<Facts> of_ranks;
+    of_ranks.reserve(ranks());
+    for (unsigned rank = 0; rank < ranks(); ++rank)
+        of_ranks.push_back(unpacked({all.values.begin() + std::ptrdiff_t(all.begins[rank]),
+                                     all.values.begin() + std::ptrdiff_t(all.begins[rank + 1])}));
+    joint([&] { check_facts_agree(of_ranks); });
+}
 
 std::string Cluster::broadcast_text(const std::string& text) {
     std::string told(comm_.all_gather(std::uint64_t(text.size())).front(), ' ');

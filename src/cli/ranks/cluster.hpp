@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/ranks/facts.hpp"
 #include "cli/ranks/group.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/communicator.hpp"
@@ -28,10 +29,16 @@ public:
     /// True if the last error was thrown on all ranks.
     bool ends_alike() const { return run_.ends_alike; }
 
+    /// Collective. Prints an error that all ranks have, on the first rank. Returns the exit status.
+    int fail_together(const Error& error);
+
     void together(const std::function<void()>& part) override;
     [[noreturn]] void refuse_object(std::uint64_t position, const std::string& message) override;
     /// Collective. Runs `part`, whose errors are the same on all ranks without together(): for example an engine's call.
     void joint(const std::function<void()>& part);
+
+    /// Collective. Throws: Error{usage}, the same on all ranks, unless all ranks pass the same facts.
+    void require_same(const Facts& own);
 
     /// Collective. Returns the text of the first rank.
     std::string broadcast_text(const std::string& text);

@@ -19,6 +19,7 @@
 #include "cli/command/interrupt.hpp"
 #include "cli/ranks/cluster.hpp"
 #include "engine/mpi/leading/leading.hpp"
+#include "octopair/version.hpp"
 
 namespace octopair::cli {
 
@@ -93,6 +94,14 @@ int serve_on_ranks(const ServeRequest& request) {
     std::signal(SIGHUP, SIG_IGN);  // the end of a terminal does not end the server
     const Interrupt interrupt;
     Cluster cluster;
+    const std::string silence = std::to_string(leading_options_of(request).silence.count()) + " ms";
+    try {
+        cluster.require_same(
+            {{"the program", "octopair " OCTOPAIR_VERSION}, {"the subcommand", "serve"}, {"--rank-timeout", silence}});
+    } catch (const Error& error) {
+        if (!cluster.ends_alike()) throw;
+        return cluster.fail_together(error);
+    }
     cluster.joint(check_leading_threads);
     if (!cluster.first()) {
         follow(MPI_COMM_WORLD, leading_options_of(request));

@@ -17,8 +17,12 @@ struct SliceParameters {
     bool wide, padded;
 };
 
-/// Parameters of a rank's call. Sent to all ranks.
+/// What a rank calls. `cancelled`: any call, which was cancelled before it began.
+enum class CallKind : std::uint8_t { search, gather, cancelled };
+
+/// Parameters of a rank's call. Sent to all ranks. Those behind the kind are the parameters of a search.
 struct CallParameters {
+    CallKind kind = CallKind::search;
     OutputKind output_kind;
     Order order;
     bool join, limited, verify;
@@ -34,7 +38,8 @@ SliceParameters parameters_of(const Objects* set) {
 
 CallParameters parameters_of(const detail::Request& request, OutputKind output_kind) {
     const Options& options = request.options;
-    return {.output_kind = output_kind,
+    return {.kind = CallKind::search,
+            .output_kind = output_kind,
             .order = options.order,
             .join = request.second != nullptr,
             .limited = options.limit.has_value(),
@@ -47,7 +52,7 @@ CallParameters parameters_of(const detail::Request& request, OutputKind output_k
 
 /// Returns the first parameter in which two calls differ, for messages; empty if they agree.
 std::string_view difference(const CallParameters& a, const CallParameters& b) {
-    if (a.output_kind != b.output_kind) return "the output (count, list or stream)";
+    if (a.output_kind != b.output_kind) return "the output (count, list, stream or 64-bit indices)";
     if (a.join != b.join) return "the number of sets";
     if (a.order != b.order) return "the order";
     if (a.margin != b.margin) return "the margin";
@@ -90,6 +95,17 @@ void check_parameters_agree(const std::vector<CallParameters>& all) {
     }
 }
 
+/// Collective: the first message of a call. Returns the parameters of all ranks. Throws: the same Error on all ranks if one gathers and
+/// another searches.
+std::vector<CallParameters> exchange_parameters(Communicator& comm, const CallParameters& own) {
+    std::vector<CallParameters> all = comm.all_gather(own);
+    const auto gathers = [](const CallParameters& one) { return one.kind == CallKind::gather; };
+    for (std::size_t rank = 1; rank < all.size(); ++rank) {
+        if (gathers(all[rank]) != gathers(all[0])) refuse(0, rank, "the function (gather_pairs or a search)");
+    }
+    return all;
+}
+
 /// Sets the origin of rounding to the median of a sample of corners, the same sample that the local engine takes.
 void choose_origin(Communicator& comm, const detail::Request& request, JointCall& call) {
     const BoxSource own(request.first, request.second, call.form);
@@ -110,10 +126,17 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
         [&](std::size_t number) { return named_from(number); });
 }
 
+void join_gather(Communicator& comm) { (void)exchange_parameters(comm, {.kind = CallKind::gather}); }
+
+void join_cancelled(Communicator& comm) {
+    (void)exchange_parameters(comm, {.kind = CallKind::cancelled});
+    Agreement(comm).together([] { throw Error(ErrorCode::cancelled, "cancelled"); });
+}
+
 JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind,
                     std::uint64_t max_objects) {
+    const std::vector<CallParameters> all = exchange_parameters(comm, parameters_of(request, output_kind));
     Agreement(comm).together([&] { detail::check_request(request); });
-    const std::vector<CallParameters> all = comm.all_gather(parameters_of(request, output_kind));
     check_parameters_agree(all);
     JointCall call;
     call.join = request.second != nullptr;

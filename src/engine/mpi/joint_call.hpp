@@ -15,8 +15,8 @@
 
 namespace octopair {
 
-/// How a call returns its pairs. The same on all ranks.
-enum class OutputKind : std::uint8_t { count, list, sink };
+/// How a call returns its pairs: as their number, in a list, to a sink, or with 64-bit indices. The same on all ranks.
+enum class OutputKind : std::uint8_t { count, list, sink, indexed };
 
 inline OutputKind output_kind_of(const detail::Output& output) {
     if (output.list != nullptr) return OutputKind::list;
@@ -59,10 +59,18 @@ private:
     }
 };
 
-/// Collective. Combines the calls of all ranks into one. `max_objects`: maximum number of objects of all ranks together.
+// The first message of every call has one form, whatever the call is. So ranks whose calls differ see that, and do not wait for each
+// other for ever.
+
+/// Collective. Combines the searches of all ranks into one. `max_objects`: maximum number of objects of all ranks together.
 /// Throws: the same Error on all ranks if the options or sizes of a rank are invalid, or if the ranks' calls differ.
 JointCall join_call(Communicator& comm, const detail::Request& request, OutputKind output_kind,
                     std::uint64_t max_objects);
+/// Collective. Begins gather_pairs(). Throws: the same Error on all ranks if another rank makes another call.
+void join_gather(Communicator& comm);
+/// Collective. Takes the place of join_call() on a rank whose call was cancelled before it began.
+/// Throws always: the same Error on all ranks, in most cases Error{cancelled}.
+void join_cancelled(Communicator& comm);
 
 /// Calls visit(i, number in this rank's source) for each sample[i] that is the position of an object of this rank.
 /// Requires: `sample` has size() and ascending elements.

@@ -53,7 +53,7 @@ Summary RankSearch::run(Task& task, const detail::Control& control) {
         find(task);
         if (task.recipients == Recipients::first && task.output.list != nullptr) {
             PairList all;
-            gather(*task.output.list, detail::storage_of(all));
+            gather_pieces(*task.output.list, detail::storage_of(all));
             *task.output.list = std::move(all);
         }
         const Traffic& after = comm_.traffic();
@@ -73,7 +73,7 @@ void RankSearch::skip() noexcept {
     std::stop_source stop;
     StopRelay stops(comm_, stop);
     try {
-        Agreement(comm_).together([] { throw Error(ErrorCode::cancelled, "cancelled"); });
+        join_cancelled(comm_);
     } catch (...) {
     }
     try {
@@ -83,16 +83,15 @@ void RankSearch::skip() noexcept {
 }
 
 void RankSearch::join(Task& task) {
-    if (task.indexed != nullptr && master_)
-        throw Error(ErrorCode::usage, "find_pairs64 does not support the paper's arrangement");
     const Metered metered(comm_, costs_.join);
     const detail::Request& asked = task.request;
-    const OutputKind output_kind = task.indexed != nullptr ? OutputKind::list : output_kind_of(task.output);
+    const OutputKind output_kind = task.indexed != nullptr ? OutputKind::indexed : output_kind_of(task.output);
     const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : max_objects;
     task.joint = join_call(comm_, asked, output_kind, most);
     task.slices[0] = task.joint.slice(0, asked.first);
     if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
     if (task.indexed == nullptr) return;
+    if (master_) throw Error(ErrorCode::usage, "find_pairs64 does not support the paper's arrangement");
     for (unsigned set = 0; set < task.sets(); ++set) {
         task.order.take(task.joint, set, task.slices[set], task.indexed->indices[set]);
         task.slices[set] = task.order.objects(set);
@@ -220,6 +219,17 @@ void RankSearch::deliver(Task& task, std::uint64_t allowance, const Give& give) 
 }
 
 void RankSearch::gather(PairList& piece, detail::PairStorage& all) {
+    try {
+        join_gather(comm_);
+    } catch (...) {
+        std::stop_source stop;
+        StopRelay(comm_, stop).end();  // as the other ranks in run()
+        throw;
+    }
+    gather_pieces(piece, all);
+}
+
+void RankSearch::gather_pieces(PairList& piece, detail::PairStorage& all) {
     RankCounts to_first(comm_.size(), 0);
     to_first[0] = piece.size();
     const Exchange counts = comm_.plan_exchange(std::move(to_first));

@@ -74,6 +74,7 @@ private:
     using Give = std::function<void(Receiver&)>;
     struct OctalPairs;
     Summary run(Task& task, const detail::Control& control);
+    void gather_pieces(PairList& piece, detail::PairStorage& all);
     void find(Task& task);
     void join(Task& task);
     void find_at_master(Task& task);

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/checksum.hpp"
 #include "base/private_export.hpp"
 #include "octopair/scene.hpp"
 
@@ -28,27 +29,6 @@ template <typename T>
 Bytes bytes_of(const T& value) {
     return std::as_bytes(std::span(&value, 1));
 }
-
-/// 64-bit checksum of a sequence of bytes. Processes the bytes as 64-bit numbers (the last one padded with zeros), then the
-/// number of bytes. Depends on length and order; any change within one 64-bit number changes the checksum.
-class Checksum {
-public:
-    void add(Bytes bytes);
-    void add(std::uint64_t number) { add(std::as_bytes(std::span(&number, 1))); }
-    std::uint64_t value() const;
-
-private:
-    static constexpr std::uint64_t factor = 0x9e3779b97f4a7c15;
-
-    static std::uint64_t mixed(std::uint64_t state, std::uint64_t number) {
-        state = (state ^ number) * factor;
-        return state ^ state >> 32;
-    }
-
-    std::uint64_t state_ = factor;
-    std::uint64_t length_ = 0;
-    std::uint64_t part_ = 0;  // bytes of an incomplete 64-bit number
-};
 
 /// Kind of a record. Numbers are part of the file format and are never reused for another meaning.
 enum class RecordKind : std::uint32_t { add = 1, move, sweep, remove, set_traits, step, result };
