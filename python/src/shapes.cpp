@@ -6,6 +6,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "call.hpp"
+#include "octopair/filters.hpp"
 
 namespace octopair::python {
 
