@@ -1,6 +1,7 @@
 // Tests that clients take turns: one with many jobs does not make the others wait for all of them.
 #include <gtest/gtest.h>
 
+#include "processes/leftovers.hpp"
 #include "service/gate.hpp"
 #include "service/guarded.hpp"
 #include "service/protocol/limit_error.hpp"

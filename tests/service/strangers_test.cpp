@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <thread>
 
+#include "engine/jobs.hpp"
+#include "processes/leftovers.hpp"
 #include "service/guarded.hpp"
 #include "service/raw_socket.hpp"
 #include "service/served.hpp"

@@ -28,7 +28,7 @@ class Floods(FloodCase):
     """Without a token a connection is cut soon, and the flood connects again. With a token it stays."""
 
     def test_rapid_reset(self):
-        self.flood("rapid reset", connections=8, seconds=2)
+        self.flood("rapid reset, stream", connections=8, seconds=2)
 
     def test_ping(self):
         self.flood("ping flood")

