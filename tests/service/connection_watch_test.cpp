@@ -1,7 +1,8 @@
-// Tests when connections of an address wait whose earlier connection was cut.
+// Tests when connections of an address wait whose earlier connection was cut, and which resets lead to a cut.
 #include "service/server/net/connection_watch.hpp"
 
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -62,7 +63,7 @@ TEST_F(PacedConnections, FollowEachOtherSlowlyAfterACut) {
     EXPECT_EQ(ready_after(terms_.interval), 1u);
     EXPECT_EQ(ready_after(terms_.interval), 1u);
     EXPECT_EQ(watch_.waiting(), 0u);
-    EXPECT_EQ(watch_.make_known(name("a", 4), "client"), ConnectionWatch::Admission::known_now);
+    EXPECT_EQ(watch_.make_known(name("a", 4), {"client", 4}, now_), ConnectionWatch::Admission::known_now);
 }
 
 TEST_F(PacedConnections, OfOtherAddressesDoNotWait) {
@@ -70,7 +71,7 @@ TEST_F(PacedConnections, OfOtherAddressesDoNotWait) {
     connect("a", 2);
     connect("b", 1);
     EXPECT_EQ(ready_after(0ms), 1u);
-    EXPECT_EQ(watch_.make_known(name("b", 1), "client"), ConnectionWatch::Admission::known_now);
+    EXPECT_EQ(watch_.make_known(name("b", 1), {"client", 1}, now_), ConnectionWatch::Admission::known_now);
 }
 
 TEST_F(PacedConnections, DoNotWaitWhenTheCutIsLongAgo) {
@@ -79,6 +80,117 @@ TEST_F(PacedConnections, DoNotWaitWhenTheCutIsLongAgo) {
     (void)watch_.check(now_);
     for (int port = 2; port <= 9; ++port) connect("a", port);
     EXPECT_EQ(ready_after(0ms), 8u);
+}
+
+/// Connections over TCP, because resets of closed connections do not count.
+class ResettingConnections : public ::testing::Test {
+protected:
+    ResettingConnections() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        sockaddr_in any{};
+        any.sin_family = AF_INET;
+        any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof(any);
+        EXPECT_EQ(::bind(listener_.number(), reinterpret_cast<sockaddr*>(&any), size), 0);
+        EXPECT_EQ(::listen(listener_.number(), 16), 0);
+        EXPECT_EQ(::getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address_), &size), 0);
+    }
+
+    /// Connects, and makes a first call. Returns the number of the connection.
+    std::uint64_t connect(const std::string& client, ConnectionWatch::Admission expected) {
+        Descriptor other(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+        EXPECT_EQ(::connect(other.number(), reinterpret_cast<sockaddr*>(&address_), sizeof(address_)), 0);
+        Descriptor connection(::accept4(listener_.number(), nullptr, nullptr, SOCK_CLOEXEC));
+        const std::uint64_t number = others_.size() + 1;
+        const std::string peer = "peer " + std::to_string(number);
+        watch_.add(std::move(connection), {peer, "address"}, now_);
+        now_ += terms_.interval;
+        for (Descriptor& ready : watch_.take_ready(now_)) connections_.push_back(std::move(ready));
+        others_.push_back(std::move(other));
+        EXPECT_TRUE(watch_.note_begin(number, now_));
+        EXPECT_EQ(watch_.make_known(peer, {client, number}, now_), expected);
+        watch_.note_end(number, false, now_);
+        return number;
+    }
+    std::uint64_t connect(const std::string& client) { return connect(client, ConnectionWatch::Admission::known_now); }
+    /// Returns whether the server has ended a connection.
+    bool is_cut(std::uint64_t number) const {
+        char byte = 0;
+        return ::recv(others_.at(number - 1).number(), &byte, 1, MSG_DONTWAIT) >= 0 || errno != EAGAIN;
+    }
+    void reset_calls(std::uint64_t number, double calls) {
+        for (double i = 0; i < calls; ++i) {
+            EXPECT_TRUE(watch_.note_begin(number, now_));
+            watch_.note_end(number, true, now_);
+        }
+    }
+
+    const ConnectionWatch::Terms terms_;
+    ConnectionWatch watch_{terms_};
+    ConnectionWatch::Clock::time_point now_ = ConnectionWatch::Clock::now();
+    Descriptor listener_;
+    sockaddr_in address_{};
+    std::vector<Descriptor> connections_, others_;
+};
+
+TEST_F(ResettingConnections, AreCutForCallsThatDoNotEnd) {
+    const std::uint64_t one = connect("anna"), other = connect("anna");
+    for (std::uint64_t i = 0; i < terms_.max_open_calls; ++i) EXPECT_TRUE(watch_.note_begin(one, now_));
+    watch_.note_end(one, false, now_);
+    EXPECT_TRUE(watch_.note_begin(one, now_));
+    EXPECT_FALSE(is_cut(one));
+    EXPECT_FALSE(watch_.note_begin(one, now_));
+    EXPECT_TRUE(is_cut(one));
+    EXPECT_FALSE(is_cut(other));
+    EXPECT_TRUE(watch_.note_begin(other, now_));
+}
+
+TEST_F(ResettingConnections, AreCutForManyResets) {
+    const std::uint64_t anna = connect("anna"), berta = connect("berta");
+    reset_calls(berta, terms_.max_resets);
+    reset_calls(anna, terms_.max_resets);
+    EXPECT_FALSE(is_cut(anna));
+    reset_calls(anna, 1);
+    EXPECT_TRUE(is_cut(anna));
+    EXPECT_FALSE(is_cut(berta));
+    EXPECT_EQ(watch_.check(now_), 1u);
+}
+
+TEST_F(ResettingConnections, AreNotCutForSlowResets) {
+    const std::uint64_t anna = connect("anna");
+    for (int second = 0; second < 20; ++second) {
+        reset_calls(anna, terms_.resets_per_second);
+        now_ += 1s;
+    }
+    EXPECT_FALSE(is_cut(anna));
+}
+
+TEST_F(ResettingConnections, AreNotCutForThoseOfOthersOfTheirClient) {
+    const std::uint64_t good = connect("anna"), bad = connect("anna");
+    reset_calls(bad, terms_.max_resets + 1);
+    EXPECT_TRUE(is_cut(bad));
+    reset_calls(good, terms_.few_resets);
+    EXPECT_FALSE(is_cut(good));
+    reset_calls(good, 1);
+    EXPECT_TRUE(is_cut(good));
+}
+
+TEST_F(ResettingConnections, AreAdmittedAgainAfterAPause) {
+    reset_calls(connect("anna"), terms_.max_resets + 1);
+    EXPECT_TRUE(is_cut(connect("anna", ConnectionWatch::Admission::paused)));
+    EXPECT_FALSE(is_cut(connect("berta")));
+    now_ += terms_.pause;
+    const std::uint64_t again = connect("anna");
+    EXPECT_FALSE(is_cut(again));
+    reset_calls(again, terms_.max_resets - 10);
+    EXPECT_TRUE(is_cut(again)) << "the earlier resets are forgotten";
+}
+
+TEST_F(ResettingConnections, DoNotCountCallsThatEndWithTheirConnection) {
+    const std::uint64_t closed = connect("anna"), open = connect("anna");
+    others_.at(closed - 1) = {};
+    reset_calls(closed, terms_.max_resets);
+    reset_calls(open, terms_.few_resets + 1);
+    EXPECT_FALSE(is_cut(open));
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "service/protocol/messages.hpp"
 #include "service/server/calls/calls.hpp"
 #include "service/server/log/event.hpp"
+#include "service/server/net/call_counting.hpp"
 #include "service/server/net/credentials.hpp"
 #include "service/server/net/listener.hpp"
 #include "service/server/server_context.hpp"
@@ -52,6 +53,8 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
     // Answering a flood of pings costs less than refusing it: gRPC collects an error for each ping beyond the limit.
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 0);
     builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, 16 << 10);
+    // Calls of one read are handled after all of it: a read of 4 MiB, the default, may begin 15,000 calls.
+    builder.AddChannelArgument(GRPC_ARG_TCP_MAX_READ_CHUNK_SIZE, 64 << 10);
 }
 
 /// Removes gRPC's reflection from a server with tokens: reflection lists the calls of the server to clients without a token.
@@ -81,7 +84,8 @@ public:
         builder.RegisterService(calls_.get());
         if (context_.access.has_tokens()) builder.SetOption(std::make_unique<WithoutReflection>());
         using Type = grpc::ServerBuilder::experimental_type::ExternalConnectionType;
-        acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD, credentials_.make());
+        acceptor_ = builder.experimental().AddExternalConnectionAcceptor(Type::FROM_FD, make_credentials());
+        builder.experimental().SetInterceptorCreators(call_counting_.interceptors());
         server_ = builder.BuildAndStart();
         if (!server_) throw Error(ErrorCode::engine_failed, "cannot start the gRPC server");
         if (options.metrics) show_metrics(*options.metrics);
@@ -127,6 +131,13 @@ public:
     }
 
 private:
+    std::shared_ptr<grpc::ServerCredentials> make_credentials() {
+        auto tls = credentials_.make();
+        if (!tls) return call_counting_.insecure_credentials();
+        call_counting_.count_in(*tls);
+        return tls;
+    }
+
     void start_listening(const ServerOptions& options) {
         Listener::Terms terms;
         terms.max_connections = options.limits.connections;
@@ -160,11 +171,14 @@ private:
     /// Throws: LimitError if the client has too many connections.
     void count_connection(const grpc::ServerContextBase& call, const std::string& client) {
         const std::string peer = call.peer();
-        switch (listener_.make_known(peer, client)) {
+        switch (listener_.make_known(peer, {client, CallCounting::connection_of(call)})) {
             case ConnectionWatch::Admission::known_before:
                 return;
             case ConnectionWatch::Admission::known_now:
                 return context_.server_log.connected(peer, client);
+            case ConnectionWatch::Admission::paused:
+                throw LimitError("resets", 0,
+                                 "resets: the client has reset too many calls; it may connect again in a second");
             case ConnectionWatch::Admission::too_many:
                 break;
         }
@@ -205,6 +219,7 @@ private:
     std::vector<std::jthread> handing_over_;
     ServerContext context_;
     Credentials credentials_;
+    CallCounting call_counting_{listener_};
     const std::unique_ptr<grpc::Service> calls_;
     std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
     std::unique_ptr<grpc::Server> server_;

@@ -1,9 +1,10 @@
 """Floods of frames, and headers that never end: they take little memory and time, and other clients get answers meanwhile.
 
-Calls that are reset at once and headers that never end are tested for strangers alone. For a client with a token gRPC has no bound;
-packaging/proxy has one, and tests of its own.
+Headers that never end are tested for strangers alone. For a client with a token gRPC has no bound; packaging/proxy has one, and tests of
+its own.
 """
 import hostile
+import http2
 from attack_case import AttackCase
 from server import TOKENS
 
@@ -28,7 +29,21 @@ class Floods(FloodCase):
     """Without a token a connection is cut soon, and the flood connects again. With a token it stays."""
 
     def test_rapid_reset(self):
-        self.flood("rapid reset, stream", connections=8, seconds=2)
+        self.flood("rapid reset", connections=8, seconds=2)
+        for kind in hostile.RESET_CALLS:
+            with self.subTest(kind=kind):
+                self.flood(kind, "greedy", mebibytes=100)
+
+    def test_many_honest_calls(self):
+        """No number of calls ends a connection, not even of calls that do not exist, if each ends before the next ones begin."""
+        with http2.admitted(self.server.address, TOKENS["greedy"]) as connection:
+            connection.send(http2.frame(http2.WINDOW_UPDATE, b"\x3f\0\0\0"))
+            for begin in range(3, 6003, 200):
+                streams = range(begin, begin + 200, 2)
+                connection.send(b"".join(http2.unary_call(one, ("Describe", "Nonsense", "/grpc.health.v1.Health/Check")[one % 3], b"",
+                                                          TOKENS["greedy"]) for one in streams))
+                self.assertTrue(connection.wait_for_end(len(streams), 30))
+            self.assertFalse(connection.closed)
 
     def test_ping(self):
         self.flood("ping flood")

@@ -86,15 +86,15 @@ def slow_header(address, until, token=None, pause=1.0):
         return sent
 
 
-# Beginnings of calls that are reset.
+# Calls that are reset: only begun, whole, and begun without a token.
 RESET_CALLS = {
-    "stream": lambda stream, token: http2.call_head(stream, "Detect", token),
-    "unary": lambda stream, token: http2.unary_call(stream, "Describe", b"", token),
-    "without token": lambda stream, token: http2.call_head(stream, "Detect"),
+    "rapid reset": lambda stream, token: http2.call_head(stream, "Detect", token),
+    "rapid reset of whole calls": lambda stream, token: http2.unary_call(stream, "Describe", b"", token),
+    "rapid reset without a token": lambda stream, token: http2.call_head(stream, "Detect"),
 }
 
 
-def rapid_reset(address, until, token=None, kind="stream", batch=500):
+def rapid_reset(address, until, token=None, kind="rapid reset", batch=500):
     """Opens calls, and resets each at once."""
     sent, stream = 0, 3
     with _connected(address, token) as connection:
@@ -178,9 +178,10 @@ def _upload_head(stream):
 
 
 KINDS = {"silent": silent, "garbage": garbage, "client hello": client_hello, "slow header": slow_header,
-         **{f"rapid reset, {kind}": functools.partial(rapid_reset, kind=kind) for kind in RESET_CALLS}, "ping flood": ping_flood, "settings flood": settings_flood,
+         "ping flood": ping_flood, "settings flood": settings_flood,
          "tokenless calls": tokenless_calls, "health watch": health_watch, "unread results": unread_results,
          "half uploads": half_uploads,
+         **{kind: functools.partial(rapid_reset, kind=kind) for kind in RESET_CALLS},
          **{f"endless header, {kind}": functools.partial(endless_header, kind=kind) for kind in ENDLESS_HEADERS}}
 
 

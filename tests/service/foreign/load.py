@@ -30,7 +30,7 @@ START_SECONDS = 0.3  # from the start of an attack to the measurement, which sho
 
 STRANGERS = ["silent", "garbage", "client hello", "slow header", "rapid reset", "ping flood", "settings flood", "tokenless calls",
              "health watch", *(f"endless header, {kind}" for kind in hostile.ENDLESS_HEADERS)]
-CLIENTS = ["unread results", "half uploads", "rapid reset", "ping flood", "settings flood",
+CLIENTS = ["unread results", "half uploads", *hostile.RESET_CALLS, "ping flood", "settings flood",
            *(f"endless header, {kind}" for kind in hostile.ENDLESS_HEADERS)]
 ATTACKS = [(kind, None) for kind in STRANGERS] + [(kind, "greedy") for kind in CLIENTS]
 

@@ -23,15 +23,23 @@ struct Received {
 };
 
 /// Reads TCP_INFO. Its bytes are at a fixed place of the system's interface (linux/tcp.h), which glibc's struct tcp_info lacks.
-Received received_by(const Descriptor& connection) {
+Received received_by(int connection) {
     constexpr std::size_t bytes_at = 128;
     std::array<std::uint8_t, 256> info{};
     socklen_t size = info.size();
-    if (::getsockopt(connection.number(), IPPROTO_TCP, TCP_INFO, info.data(), &size) != 0) return {};
+    if (::getsockopt(connection, IPPROTO_TCP, TCP_INFO, info.data(), &size) != 0) return {};
     Received received{info[0] == TCP_ESTABLISHED};
     if (size >= bytes_at + sizeof(received.bytes))
         std::memcpy(&received.bytes, &info[bytes_at], sizeof(received.bytes));
     return received;
+}
+
+/// Ends a connection, and drops the bytes that have arrived on it. After shutdown() gRPC would still read them: megabytes, with
+/// thousands of calls.
+void reset(int connection) {
+    sockaddr none{};
+    none.sa_family = AF_UNSPEC;
+    if (::connect(connection, &none, sizeof(none)) != 0) (void)::shutdown(connection, SHUT_RDWR);
 }
 
 }  // namespace
@@ -90,26 +98,34 @@ void ConnectionWatch::cut_oldest() {
 }
 
 void ConnectionWatch::cut(std::vector<Unknown>::iterator connection) {
-    (void)::shutdown(connection->connection.number(), SHUT_RDWR);
+    reset(connection->connection.number());
     unknown_.erase(connection);
     ++cut_;
 }
 
 void ConnectionWatch::cut_and_pace(std::vector<Unknown>::iterator connection, Clock::time_point now) {
-    Paced& paced = paced_[connection->peer.address];
-    paced.next = std::max(paced.next, now + terms_.interval);
-    paced.until = now + terms_.remembered;
+    pace(connection->peer.address, now);
     cut(connection);
 }
 
-ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, const std::string& client) {
+void ConnectionWatch::pace(const std::string& address, Clock::time_point now) {
+    Paced& paced = paced_[address];
+    paced.next = std::max(paced.next, now + terms_.interval);
+    paced.until = now + terms_.remembered;
+}
+
+ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, const Client& client,
+                                                       Clock::time_point now) {
     const auto found = std::find_if(unknown_.begin(), unknown_.end(),
                                     [&](const Unknown& connection) { return connection.peer.name == name; });
     if (found == unknown_.end()) return Admission::known_before;
-    if (terms_.max_per_client > 0) {
-        if (open_connections(client) >= terms_.max_per_client) return Admission::too_many;
-        known_.push_back({found->number, socket_of(found->connection.number()), client});
+    if (const auto paused = paused_.find(client.name); paused != paused_.end() && now < paused->second) {
+        cut_and_pace(found, now);
+        return Admission::paused;
     }
+    if (terms_.max_per_client > 0 && open_connections(client.name) >= terms_.max_per_client) return Admission::too_many;
+    known_[client.connection] = {found->peer.address, found->number, socket_of(found->connection.number()),
+                                 client.name};
     unknown_.erase(found);
     return Admission::known_now;
 }
@@ -121,15 +137,67 @@ void ConnectionWatch::note_refused(const std::string& name, Clock::time_point no
 }
 
 std::uint64_t ConnectionWatch::open_connections(const std::string& client) {
-    std::erase_if(known_, [](const Known& connection) { return socket_of(connection.number) != connection.socket; });
-    return std::uint64_t(std::count_if(known_.begin(), known_.end(),
-                                       [&](const Known& connection) { return connection.client == client; }));
+    forget_closed();
+    return std::uint64_t(
+        std::count_if(known_.begin(), known_.end(), [&](const auto& known) { return known.second.client == client; }));
+}
+
+bool ConnectionWatch::Known::is_open() const { return socket_of(descriptor) == socket; }
+
+void ConnectionWatch::forget_closed() {
+    std::erase_if(known_, [](const auto& known) { return !known.second.is_open(); });
+    std::erase_if(calls_, [&](const auto& calls) { return calls.second.open == 0 && !known_.contains(calls.first); });
+    constexpr std::size_t least = 64;
+    forget_from_ = std::max(least, 2 * calls_.size());
+}
+
+bool ConnectionWatch::note_begin(std::uint64_t number, Clock::time_point now) {
+    if (calls_.size() >= forget_from_) forget_closed();
+    Calls& calls = calls_[number];
+    if (calls.open < terms_.max_open_calls) {
+        ++calls.open;
+        return true;
+    }
+    cut_known(number, now);
+    return false;
+}
+
+void ConnectionWatch::note_end(std::uint64_t number, bool reset, Clock::time_point now) {
+    const auto found = calls_.find(number);
+    if (found == calls_.end()) return;
+    if (found->second.open > 0) --found->second.open;
+    if (!reset) return;
+    const auto known = known_.find(number);
+    // The end of a connection resets all its calls.
+    if (known == known_.end() || !known->second.is_open() || !received_by(known->second.descriptor).open) return;
+    Recent& of_client = resets_[known->second.client];
+    add_reset(of_client, now);
+    add_reset(found->second.resets, now);
+    of_client.count = std::min(of_client.count, terms_.max_resets + 1);
+    if (of_client.count > terms_.max_resets && found->second.resets.count > terms_.few_resets) cut_known(number, now);
+}
+
+void ConnectionWatch::add_reset(Recent& resets, Clock::time_point now) const {
+    const double seconds = std::chrono::duration<double>(now - resets.since).count();
+    resets = {std::max(0.0, resets.count - seconds * terms_.resets_per_second) + 1, now};
+}
+
+void ConnectionWatch::cut_known(std::uint64_t number, Clock::time_point now) {
+    const auto found = known_.find(number);
+    if (found == known_.end()) return;
+    if (found->second.is_open()) {
+        reset(found->second.descriptor);
+        pace(found->second.address, now);
+        paused_[found->second.client] = now + terms_.pause;
+        ++cut_;
+    }
+    known_.erase(found);
 }
 
 std::uint64_t ConnectionWatch::check(Clock::time_point now) {
     for (std::size_t i = unknown_.size(); i-- > 0;) {
         const auto connection = unknown_.begin() + std::ptrdiff_t(i);
-        const Received received = received_by(connection->connection);
+        const Received received = received_by(connection->connection.number());
         if (!received.open) {
             unknown_.erase(connection);
         } else if (connection->number >= 0 && received.bytes > terms_.max_bytes) {
@@ -138,6 +206,8 @@ std::uint64_t ConnectionWatch::check(Clock::time_point now) {
             cut(connection);
         }
     }
+    std::erase_if(resets_, [&](const auto& resets) { return now > resets.second.since + terms_.remembered; });
+    std::erase_if(paused_, [&](const auto& paused) { return now > paused.second + terms_.remembered; });
     std::erase_if(paced_, [&](const auto& paced) { return now > paced.second.until; });
     return std::exchange(cut_, 0);
 }

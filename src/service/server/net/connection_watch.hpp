@@ -7,9 +7,13 @@
 //   - in refused calls: at most `max_refused_calls`. Calls that are reset at once, for example, would cost much (CVE-2023-44487);
 //   - in number: all unknown connections together may take half of the slots, those of one address an eighth. Beyond that, the
 //     oldest unknown connection of the address that has most of them is cut. So known clients always find slots.
-// A known connection counts for the client of its first call, until it is closed.
+// A known connection counts for the client of its first call, until it is closed. It is bounded in calls that it resets (CVE-2023-44487):
+//   - `max_open_calls`: calls that have begun and not ended. HTTP/2 permits fewer streams; the others were reset, and the server has not
+//     dealt with that yet;
+//   - `max_resets`: calls of a client that ended by a reset lately. A connection with few of them is not cut for those of others.
+// After such a cut the client's new connections are cut at their first call, for a `pause`.
 //
-// After a connection was cut for its bytes or refused calls, new connections of its address wait. They are handed on one by one, with an
+// After a connection was cut for its bytes or calls, new connections of its address wait. They are handed on one by one, with an
 // interval between them. Otherwise a stranger could connect again at once and cost as much time again. No address is refused, because
 // clients may share it.
 #pragma once
@@ -21,6 +25,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "base/descriptor.hpp"
@@ -38,6 +43,10 @@ public:
         std::chrono::milliseconds greeting{10'000};
         std::uint64_t max_bytes = 128 << 10;
         std::uint64_t max_refused_calls = 32;
+        std::uint64_t max_open_calls = 512;
+        double max_resets = 256, resets_per_second = 50;  ///< at once, and then
+        double few_resets = 16;                           ///< of a connection
+        std::chrono::milliseconds pause{1000};
         std::chrono::milliseconds interval{50};        ///< between waiting connections of one address
         std::chrono::milliseconds remembered{10'000};  ///< after a cut: time in which new connections wait
     };
@@ -53,10 +62,18 @@ public:
     void add(Descriptor connection, const Peer& peer, Clock::time_point now);
     /// Returns the connections that need not wait any longer, in the order of add(). Keeps copies of their descriptors.
     std::vector<Descriptor> take_ready(Clock::time_point now);
-    enum class Admission : std::uint8_t { known_before, known_now, too_many };
+    enum class Admission : std::uint8_t { known_before, known_now, too_many, paused };
+    struct Client {
+        std::string name;
+        std::uint64_t connection;  ///< its number in note_begin()
+    };
     /// Notes that `client` makes a call on the connection of a peer. A connection that is not known yet becomes known and is not watched
-    /// any longer, unless the client has too many already.
-    Admission make_known(const std::string& name, const std::string& client);
+    /// any longer, unless the client has too many already. If the client pauses, the connection is cut.
+    Admission make_known(const std::string& name, const Client& client, Clock::time_point now);
+    /// Notes that a call begins on the connection with this number. Numbers are not used again. Returns false to refuse the call.
+    bool note_begin(std::uint64_t number, Clock::time_point now);
+    /// Notes that a call ends. `reset`: the client has ended it.
+    void note_end(std::uint64_t number, bool reset, Clock::time_point now);
     /// Notes that a call of a peer was refused, because the server does not know who makes it.
     void note_refused(const std::string& name, Clock::time_point now);
     /// Cuts the connections whose time or bytes are used up. Returns the number of connections cut since the last call.
@@ -81,9 +98,24 @@ private:
     };
 
     struct Known {
-        int number;    // gRPC's descriptor
-        ino_t socket;  // shows whether the descriptor is still of this connection
+        std::string address;
+        int descriptor;  // gRPC's
+        ino_t socket;    // shows whether the descriptor is still of this connection
         std::string client;
+
+        bool is_open() const;
+    };
+
+    /// Number of recent events, which shrinks with time.
+    struct Recent {
+        double count = 0;
+        Clock::time_point since;
+    };
+
+    /// The calls of a connection.
+    struct Calls {
+        std::uint64_t open = 0;
+        Recent resets;
     };
 
     bool is_full(const std::string& address) const;
@@ -91,12 +123,22 @@ private:
     void cut_oldest();
     void cut(std::vector<Unknown>::iterator connection);
     void cut_and_pace(std::vector<Unknown>::iterator connection, Clock::time_point now);
+    void cut_known(std::uint64_t number, Clock::time_point now);
+    void pace(const std::string& address, Clock::time_point now);
+    void add_reset(Recent& resets, Clock::time_point now) const;
+    void forget_closed();
     bool must_wait(const std::string& address, Clock::time_point now);
 
     const Terms terms_;
-    std::vector<Unknown> unknown_;        // oldest first
-    std::vector<Known> known_;            // closed ones are removed when open ones are counted
-    std::map<std::string, Paced> paced_;  // by address; entries are removed after `remembered`
+    std::vector<Unknown> unknown_;  // oldest first
+    // By number. Entries of closed connections are removed by forget_closed().
+    std::unordered_map<std::uint64_t, Known> known_;
+    std::unordered_map<std::uint64_t, Calls> calls_;
+    std::size_t forget_from_ = 64;  // number of entries from which on it is called
+    // Entries are removed after `remembered`.
+    std::map<std::string, Recent> resets_;             // by client
+    std::map<std::string, Clock::time_point> paused_;  // by client: until when
+    std::map<std::string, Paced> paced_;               // by address
     std::uint64_t cut_ = 0;
 };
 

@@ -64,7 +64,7 @@ void Credentials::reload() {
 }
 
 std::shared_ptr<grpc::ServerCredentials> Credentials::make() const {
-    if (!copies_) return grpc::InsecureServerCredentials();
+    if (!copies_) return nullptr;
     namespace tls = grpc::experimental;
     constexpr unsigned refresh_seconds = 1;
     const bool names_clients = !tls_.client_authority.empty();

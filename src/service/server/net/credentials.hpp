@@ -23,7 +23,7 @@ public:
     /// reading.
     Credentials(const ServerTls& tls, spdlog::logger& log);
 
-    /// Returns gRPC's credentials: TLS, or insecure ones without a certificate. Requires: this object outlives them.
+    /// Returns gRPC's credentials of TLS; null without a certificate. Requires: this object outlives them.
     std::shared_ptr<grpc::ServerCredentials> make() const;
     /// Reads the files again. Connections that are made more than two seconds later use them. Throws: as the constructor; then nothing
     /// changes.

@@ -279,10 +279,10 @@ void Listener::hand_on(Descriptor connection) {
     terms_.accept(std::move(connection));
 }
 
-ConnectionWatch::Admission Listener::make_known(const std::string& peer, const std::string& client) {
+ConnectionWatch::Admission Listener::make_known(const std::string& peer, const ConnectionWatch::Client& client) {
     if (!watch_) return ConnectionWatch::Admission::known_before;
     const std::lock_guard lock(watch_mutex_);
-    const auto admission = watch_->make_known(peer, client);
+    const auto admission = watch_->make_known(peer, client, ConnectionWatch::Clock::now());
     unknown_ = watch_->unknown();
     return admission;
 }
@@ -292,6 +292,16 @@ void Listener::note_refused(const std::string& peer) {
     const std::lock_guard lock(watch_mutex_);
     watch_->note_refused(peer, ConnectionWatch::Clock::now());
     unknown_ = watch_->unknown();
+}
+
+bool Listener::note_begin(std::uint64_t number) {
+    const std::lock_guard lock(watch_mutex_);
+    return !watch_ || watch_->note_begin(number, ConnectionWatch::Clock::now());
+}
+
+void Listener::note_end(std::uint64_t number, bool reset) {
+    const std::lock_guard lock(watch_mutex_);
+    if (watch_) watch_->note_end(number, reset, ConnectionWatch::Clock::now());
 }
 
 void Listener::check_watched() {

@@ -56,8 +56,11 @@ public:
     void start(Terms terms);
     /// Stops accepting connections.
     void stop();
-    /// Notes that `client` makes a call from this peer (ConnectionWatch::Peer::name). Thread safety: safe.
-    ConnectionWatch::Admission make_known(const std::string& peer, const std::string& client);
+    /// Notes that `client` makes a call from this peer (ConnectionWatch). Thread safety: safe.
+    ConnectionWatch::Admission make_known(const std::string& peer, const ConnectionWatch::Client& client);
+    /// Note that a call begins or ends (ConnectionWatch). Thread safety: safe.
+    bool note_begin(std::uint64_t number);
+    void note_end(std::uint64_t number, bool reset);
     /// Notes that a call from this peer was refused, because the server does not know who makes it. Thread safety: safe.
     void note_refused(const std::string& peer);
     /// Returns whether connections wait for that. Thread safety: safe.
