@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "service/protocol/octopair.grpc.pb.h"
 #include "service/server/net/listener.hpp"
 
 namespace octopair::service {
@@ -19,6 +20,7 @@ namespace {
 
 /// Property of a connection's authentication context: the connection's number.
 constexpr const char* number_property = "octopair_connection";
+const std::string service_path = std::string("/") + v1::Octopair::service_full_name() + "/";
 constexpr const char* refusal = "the connection has reset too many calls";
 
 std::string next_number() {
@@ -95,11 +97,16 @@ public:
 
     void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
         using Point = grpc::experimental::InterceptionHookPoints;
-        if (methods->QueryInterceptionHookPoint(Point::POST_RECV_CLOSE)) reset_ = call_.server_context()->IsCancelled();
+        if (methods->QueryInterceptionHookPoint(Point::POST_RECV_CLOSE) && is_own())
+            reset_ = call_.server_context()->IsCancelled();
         methods->Proceed();
     }
 
 private:
+    /// Returns whether the call is one of octopair's. For calls of gRPC's own services that block a thread (reflection), IsCancelled()
+    /// would call Intercept() without end.
+    bool is_own() const { return std::string_view(call_.method()).starts_with(service_path); }
+
     grpc::experimental::ServerRpcInfo& call_;
     Listener& listener_;
     const std::uint64_t connection_;
