@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(, ServerClock, ::testing::Values("+1d", "-1d"),
 TEST_P(ServerClock, IsSetWhileAJobRuns) {
     ServerProgram& server = serve("");
     const auto engine = connect(server.address(), {.patience = minutes(1)});
-    const std::vector<Box3f> heap(120'000);
+    const std::vector<Box3f> heap(40'000);
     Job job = engine->submit_stream(heap, {});
     const auto channel = test::open_channel(server.address());
     const auto spec = test::spec_of(1000);
