@@ -93,6 +93,11 @@ class Answers(InFolder):
             self.assertEqual(headers['x-content-type-options'], 'nosniff')
             self.assertEqual(headers['cache-control'], 'no-store')
             self.assertEqual(view.request('/', headers=['Accept-Encoding: gzip, br'])[2], body)
+            for given, compressed in (('gzip', True), ('GZIP;q=0.001', True), ('br, x-gzip;q=1', True), ('*', True), ('*;q=0, gzip', True),
+                                      ('', False), ('gzip;q=0', False), ('gzip; q=0.000', False), ('*;q=0', False), ('gzip;q=0, *', False),
+                                      ('identity', False), ('gzipped', False)):
+                headers = view.request('/', headers=[f'Accept-Encoding: {given}'])[1]
+                self.assertEqual(headers.get('content-encoding') == 'gzip', compressed, given)
             self.assertEqual(view.request('/?anything=1')[2], body)
             status, headers, empty = view.request('/', method='HEAD')
             self.assertEqual((status, empty, headers['content-length']), (200, b'', str(len(body))))

@@ -3,6 +3,7 @@
 
     attacks_test.py --program PATH [CLASS[.TEST]...]
 """
+import contextlib
 import json
 import math
 import os
@@ -69,6 +70,26 @@ class Access(InFolder):
                 self.assertFalse(headers.get('location', '').startswith(('//', '/\\')), address)
         with self.view(self.path('boxes.npy'), '--listen', '127.0.0.1:0') as other:
             self.assertNotEqual(other.token, view.token)
+
+    def test_strangers_do_not_keep_the_owner_out(self):
+        """Connections without the token: silent ones, ones with a half request, and ones that ask again and again."""
+        refused = b'GET /view.json HTTP/1.1\r\nHost: x\r\n\r\n'
+        with self.view(self.path('boxes.npy'), '--listen', '127.0.0.1:0') as view, WebSocket(
+                view, headers=[f'Authorization: Bearer {view.token}']) as page, contextlib.ExitStack() as strangers:
+            self.assertEqual(page.status, 101)
+            for first in (b'', refused[:20], refused):
+                for _ in range(300):
+                    connection = strangers.enter_context(view.connect())
+                    with contextlib.suppress(ConnectionError):
+                        connection.sendall(first)
+                for _ in range(20):
+                    self.assertEqual(view.request('/view.json', headers=[f'Authorization: Bearer {view.token}'])[0], 200)
+            with view.connect() as connection:
+                connection.sendall(refused)
+                self.assertEqual(parsed(read_all(connection))[0], 403)  # until the server ends the connection
+            page.send(b'still there?', opcode=9)
+            while page.read()[0] != 10:  # an answer to the ping; before, messages may come
+                pass
 
     def test_addresses(self):
         with self.view(self.path('boxes.npy')) as view:

@@ -38,8 +38,35 @@ AccessRequest access_request(const Request& request, const std::optional<Address
             .has_origin = request.find(http::field::origin) != request.end()};
 }
 
+std::string trimmed(std::string_view text) {
+    const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+    return std::string(text.substr(begin, text.find_last_not_of(" \t") + 1 - begin));
+}
+
+/// Returns whether a weight of Accept-Encoding is above 0 (RFC 9110, 12.4.2).
+bool is_accepted(const http::param_list& parameters) {
+    for (const auto& [name, value] : parameters) {
+        if (beast::iequals(name, "q")) return value.find_first_not_of("0.") != beast::string_view::npos;
+    }
+    return true;
+}
+
 bool accepts_gzip(const Request& request) {
-    return header_of(request, http::field::accept_encoding).find("gzip") != std::string_view::npos;
+    std::optional<bool> gzip, any;
+    const auto [begin, end] = request.equal_range(http::field::accept_encoding);
+    for (auto field = begin; field != end; ++field) {
+        // Beast's ext_list gives a coding without parameters those of the coding before it.
+        for (beast::string_view rest = field->value(); !rest.empty();) {
+            const beast::string_view one = rest.substr(0, rest.find(','));
+            rest.remove_prefix(std::min(rest.size(), one.size() + 1));
+            const beast::string_view words = one.substr(0, one.find(';'));
+            const std::string coding = trimmed(view_of(words));
+            const http::param_list parameters(one.substr(words.size()));
+            if (beast::iequals(coding, "gzip") || beast::iequals(coding, "x-gzip")) gzip = is_accepted(parameters);
+            if (coding == "*") any = is_accepted(parameters);
+        }
+    }
+    return gzip ? *gzip : any.value_or(false);
 }
 
 Response respond(const Request& request, http::status status) {
@@ -230,10 +257,23 @@ private:
     bool sending_ = false, joined_ = false;
 };
 
-class HttpConnection final : public std::enable_shared_from_this<HttpConnection> {
+class HttpConnection final : public Stranger, public std::enable_shared_from_this<HttpConnection> {
 public:
     HttpConnection(Tcp::socket socket, ConnectionHost& host)
-        : counted_(host), host_(host), stream_(std::move(socket)) {}
+        : counted_(std::in_place, host), host_(host), stream_(std::move(socket)) {
+        BeastError ignored;
+        address_ = stream_.socket().remote_endpoint(ignored).address().to_string();
+        host_.came(*this);
+    }
+    HttpConnection(const HttpConnection&) = delete;
+    HttpConnection& operator=(const HttpConnection&) = delete;
+    ~HttpConnection() override { host_.went(*this); }
+
+    const std::string& address() const override { return address_; }
+    void cut() override {
+        counted_.reset();  // this object lives until its pending operation has ended
+        stream_.close();
+    }
 
     void read() {
         parser_.emplace();
@@ -263,10 +303,12 @@ private:
         const std::optional<Address> address = Address::parse(view_of(request_.target()));
         const AccessRequest access = access_request(request_, address);
         if (!host_.access().allows(access)) {
+            request_.keep_alive(false);  // a stranger must not keep others out
             return write(respond_text(
                 request_, http::status::forbidden,
                 "Only pages of this viewer, with its token, get an answer. Use the address that octopair printed."));
         }
+        host_.went(*this);
         if (!address) return write(respond_text(request_, http::status::bad_request, "invalid address"));
         if (websocket::is_upgrade(request_)) return upgrade(*address);
         if (request_.method() != http::verb::get && request_.method() != http::verb::head) {
@@ -328,8 +370,9 @@ private:
         stream_.socket().shutdown(Tcp::socket::shutdown_send, ignored);
     }
 
-    Counted counted_;
+    std::optional<Counted> counted_;
     ConnectionHost& host_;
+    std::string address_;
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{max_header + 4096};
     std::optional<http::request_parser<http::empty_body>> parser_;

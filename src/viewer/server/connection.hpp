@@ -29,6 +29,16 @@ public:
     virtual std::uint64_t last_turn() const = 0;
 };
 
+/// A connection without a request that was answered: a stranger's.
+class Stranger {
+public:
+    virtual ~Stranger() = default;
+    /// Returns the address of its other end, without the port.
+    virtual const std::string& address() const = 0;
+    /// Ends the connection.
+    virtual void cut() = 0;
+};
+
 /// Services of the server for its connections. Outlives them.
 class ConnectionHost {
 public:
@@ -39,6 +49,9 @@ public:
     virtual void compute(std::function<void()> work) = 0;
     virtual void opened() = 0;
     virtual void closed() = 0;
+    virtual void came(Stranger& stranger) = 0;
+    /// The stranger has ended, or is one no longer. May be called again.
+    virtual void went(Stranger& stranger) = 0;
     virtual void joined(WebSocket& socket) = 0;
     virtual void left(WebSocket& socket) = 0;
     /// Returns whether a live frame may be sent now. If not, the host calls WebSocket::offer_frame() later.

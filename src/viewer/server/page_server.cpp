@@ -12,7 +12,9 @@
 #include <cerrno>
 #include <chrono>
 #include <future>
+#include <map>
 #include <set>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -112,6 +114,11 @@ public:
     void compute(std::function<void()> work) override { asio::post(pool_, std::move(work)); }
     void opened() override { ++connections_; }
     void closed() override { --connections_; }
+    void came(Stranger& stranger) override {
+        if (strangers_.size() >= max_strangers) cut_stranger();
+        strangers_.push_back(&stranger);
+    }
+    void went(Stranger& stranger) override { std::erase(strangers_, &stranger); }
     void joined(WebSocket& socket) override {
         sockets_.insert(&socket);
         source_.connected(socket.path(), true);
@@ -152,6 +159,19 @@ private:
             if (!may_send_frame()) return;
             socket->offer_frame();
         }
+    }
+
+    /// Cuts the oldest stranger of the address that has most of them.
+    void cut_stranger() {
+        std::map<std::string_view, std::size_t> counts;
+        for (const Stranger* stranger : strangers_) ++counts[stranger->address()];
+        const auto most = std::max_element(counts.begin(), counts.end(),
+                                           [](const auto& x, const auto& y) { return x.second < y.second; });
+        const auto oldest = std::find_if(strangers_.begin(), strangers_.end(),
+                                         [&](const Stranger* one) { return one->address() == most->first; });
+        Stranger& cut = **oldest;
+        strangers_.erase(oldest);
+        cut.cut();
     }
 
     /// Serves connections until stop(). A connection for which the memory does not suffice ends.
@@ -247,12 +267,14 @@ private:
     }
 
     static constexpr unsigned max_connections = 256;
+    static constexpr std::size_t max_strangers = 64;
     /// For all pages together, with low priority. Without a limit, 50 pages slowed the steps of a scene of 100,000 boxes by a fifth.
     static constexpr double max_frame_bytes_per_second = 50e6;
 
     Source& source_;
     PageServerOptions options_;
     std::set<WebSocket*> sockets_;
+    std::vector<Stranger*> strangers_;  // oldest first
     std::atomic<unsigned> connections_ = 0;
     // Connections that are still open are destroyed with io_, and use the members above. Handlers that have not run are
     // destroyed with io_, too, so they must not own this object.

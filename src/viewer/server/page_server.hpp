@@ -3,6 +3,8 @@
 // Access    Only requests with the server's own address in `Host`, and in `Origin` if they have one, are answered. With a token,
 //           requests also need the token: as a parameter, which becomes a cookie, or as "Authorization: Bearer". Without a token,
 //           only connections of this user and of root are accepted.
+// Strangers A refused request ends its connection. At most 64 of 256 connections may be without an answered request: beyond that, the
+//           oldest of the address that has most of them is cut. So strangers do not keep the owner out.
 // Limits    Requests have no body, at most 16 KiB of header, and 30 s to arrive (the first one 5 s). A message of a page has at most 1 KiB.
 // Pace      A page gets a live frame when it requests one. So no frames queue up for a page that is slow.
 // Threads   Two of its own: one for connections, one that computes answers. notify() and broadcast() may be called by any thread.
