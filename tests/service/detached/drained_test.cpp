@@ -49,7 +49,7 @@ public:
         return std::make_unique<service::UploadedInput>(v1::JobSpec(), engine);
     }
     void end(const v1::JobReport&) override {}
-    void wait_for_room(const service::NoRoomError&) override {}
+    void wait_for_room(const service::NoRoomError&, std::chrono::duration<double>) override {}
     bool has_room() override { return true; }
     void run_on_disk_queue(std::function<void()> task) override { task(); }
 };

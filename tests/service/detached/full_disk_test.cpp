@@ -2,8 +2,11 @@
 #include <sched.h>
 #include <sys/mount.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
@@ -38,8 +41,6 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
             EXPECT_NE(words.find("No space left"), std::string::npos) << words;
         };
         refused(many);
-        const std::string id = submit(*client, work);
-        EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
         const std::vector<Box3f> heap(2000);  // a small input with a result of 16 MB
         const std::string too_large = client->submit({std::span(heap), {}});
         const JobStatus status = client->wait(too_large, std::chrono::minutes(1));
@@ -47,6 +48,8 @@ TEST(FullDisk, RefusesWhatDoesNotFit) {
         EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed)) << status.error->what();
         EXPECT_EQ(std::string(status.error->what()),
                   "the result does not fit on the server's disk, which has 3145728 bytes in all");
+        const std::string id = submit(*client, work);
+        EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
         refused(many);
         EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
         client->release(id);
@@ -84,6 +87,43 @@ TEST(FullDisk, WaitsForRoomForAResult) {
             << server.log();
         EXPECT_NE(server.log().find("No space left"), std::string::npos);
         EXPECT_EQ(server.log().find(disk), std::string::npos) << "messages do not name the server's folders";
+    }
+    EXPECT_EQ(::umount(disk.c_str()), 0);
+}
+
+/// Fills the disk of a folder, but for this number of blocks of 4 KiB. Returns the path of the file.
+std::string fill(const std::string& disk, std::uint64_t free_blocks) {
+    constexpr std::size_t block = 4096;
+    const std::string filler = disk + "/filler";
+    std::ofstream file(filler, std::ios::binary);
+    while (file.write(std::string(block, 'x').data(), block).flush()) {
+    }
+    file.close();
+    std::filesystem::resize_file(filler, std::filesystem::file_size(filler) / block * block - free_blocks * block);
+    return filler;
+}
+
+/// Jobs that found no room for small results run as soon as the disk has room for these, though it is nearly full.
+TEST(FullDisk, DoesNotMakeSmallResultsWaitForMuchRoom) {
+    const test::TemporaryDirectory folder;
+    const std::string disk = folder.file("disk");
+    if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
+    {
+        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
+        const auto client = server.client();
+        const std::vector<Box3f> heap(200);  // its input has 5 KB, its result 159 KB
+        const Work work(Objects{std::span(heap), {}});
+        constexpr std::uint64_t jobs = 8, blocks_of_input = 3, blocks_of_result = 42;
+        const std::string filler = fill(disk, jobs * blocks_of_input);
+        std::vector<std::string> ids;
+        for (std::uint64_t i = 0; i < jobs; ++i) ids.push_back(submit(*client, work));
+        const auto waiting = [&] {
+            return std::uint64_t(
+                std::ranges::count_if(ids, [&](const std::string& id) { return client->status(id).waits_for_room; }));
+        };
+        ASSERT_TRUE(comes_true([&] { return waiting() == jobs; })) << waiting();
+        std::filesystem::resize_file(filler, std::filesystem::file_size(filler) - jobs * blocks_of_result * 4096);
+        for (const std::string& id : ids) EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
     }
     EXPECT_EQ(::umount(disk.c_str()), 0);
 }

@@ -42,9 +42,9 @@ public:
     virtual std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const = 0;
     /// Stores how the job ended. On return `ending` is on the disk. Throws: Error{io_failed}, NoRoomError.
     virtual void end(const v1::JobReport& ending) = 0;
-    /// Deletes what was stored of the result, because there was no room for more. The job must then wait until has_room().
-    /// Throws: Error if there can never be enough room.
-    virtual void wait_for_room(const NoRoomError& why) = 0;
+    /// Deletes what was stored of the result, because there was no room for more. The job must then wait until has_room(). `run`: how long
+    /// it ran. Throws: Error if there can never be enough room.
+    virtual void wait_for_room(const NoRoomError& why, std::chrono::duration<double> run) = 0;
     /// Returns whether the job may run, as far as room for its result is concerned.
     virtual bool has_room() = 0;
     /// Runs `task` soon on the thread of the disk queue, where it may wait for disks.

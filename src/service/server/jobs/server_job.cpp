@@ -111,11 +111,13 @@ ServerJob::Ran ServerJob::run(Engine& engine) noexcept {
 /// was ended early.
 bool ServerJob::queue_again(const NoRoomError& why) noexcept {
     try {
+        Clock::time_point began;
         {
             const std::lock_guard lock(mutex_);
             if (early_ || abandoned_) throw Error(ErrorCode::cancelled, "cancelled");
+            began = began_;
         }
-        parts_.record->wait_for_room(why);
+        parts_.record->wait_for_room(why, Clock::now() - began);
     } catch (...) {
         end_failed(failure_of_exception());
         return false;

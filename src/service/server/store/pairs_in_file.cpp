@@ -51,6 +51,7 @@ void PairsInFile::write_piece() {
 
 void PairsInFile::take_room(std::uint64_t bytes) {
     const std::lock_guard lock(mutex_);
+    needed_bytes_ = reservation_.amount() + bytes;
     try {
         reservation_.grow(bytes);
     } catch (const LimitError& full) {
@@ -59,9 +60,9 @@ void PairsInFile::take_room(std::uint64_t bytes) {
     }
 }
 
-std::uint64_t PairsInFile::bytes() const {
+std::uint64_t PairsInFile::needed_bytes() const {
     const std::lock_guard lock(mutex_);
-    return reservation_.amount();
+    return needed_bytes_;
 }
 
 void PairsInFile::open() {

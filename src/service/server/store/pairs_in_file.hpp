@@ -46,8 +46,8 @@ public:
     std::optional<grpc::Slice> piece(std::uint64_t offset) const override;
     std::uint64_t ready() const override;
 
-    /// Returns the bytes of disk space that the pairs take.
-    std::uint64_t bytes() const;
+    /// Returns the bytes of disk space that the pairs take, with those for which there was no room.
+    std::uint64_t needed_bytes() const;
     /// Deletes all pairs. Does nothing after seal().
     void discard() noexcept;
     /// Completes the file with `ending`. Throws: Error{io_failed}.
@@ -70,6 +70,7 @@ private:
     std::shared_ptr<File> part_;       // file N.result.part; null once sealed
     std::vector<std::uint64_t> sums_;  // checksum of each piece
     std::uint64_t ready_ = 0;
+    std::uint64_t needed_bytes_ = 0;
     bool removed_ = false;
 };
 

@@ -50,9 +50,8 @@ void StoredJob::end(const v1::JobReport& ending) {
     }
 }
 
-void StoredJob::wait_for_room(const NoRoomError& why) {
-    constexpr std::chrono::seconds first(1), longest(60);
-    needed_bytes_ = parts_.pairs->bytes() + piece_bytes;
+void StoredJob::wait_for_room(const NoRoomError& why, std::chrono::duration<double> run) {
+    needed_bytes_ = parts_.pairs->needed_bytes();
     parts_.pairs->discard();
     parts_.folder.disk().check(parts_.disk.amount() + needed_bytes_);
     const std::uint64_t most = parts_.folder.disk_space().all;
@@ -60,20 +59,25 @@ void StoredJob::wait_for_room(const NoRoomError& why) {
         throw Error(ErrorCode::io_failed, "the result does not fit on the server's disk, which has " +
                                               std::to_string(most) + " bytes in all");
     }
-    if (pause_.count() == 0) {
+    if (!std::exchange(has_waited_, true)) {
         log_text(parts_.folder.log(), LogLevel::warning,
                  "job " + parts_.stored.spec.id() + ": waits for room for its result: " + why.what());
     }
-    pause_ = std::clamp<std::chrono::seconds>(2 * pause_, first, longest);
-    next_check_ = std::chrono::steady_clock::now() + pause_;
+    // The result may need more than is known now, and a run that ends without room is lost work. So the pause is longer than the run.
+    constexpr std::chrono::duration<double> shortest(0.1), longest(60);
+    const auto pause = std::clamp<std::chrono::duration<double>>(8 * run, shortest, longest);
+    next_check_ =
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause);
 }
 
 bool StoredJob::has_room() {
-    constexpr std::chrono::milliseconds apart(500);
+    constexpr std::chrono::milliseconds apart(100);
     const auto now = std::chrono::steady_clock::now();
     if (now < next_check_) return false;
     next_check_ = now + apart;
-    return parts_.folder.disk_space().free >= needed_bytes_ &&
+    // The file has a head and an end, too, and takes whole blocks of the disk.
+    constexpr std::uint64_t block = 4096;
+    return parts_.folder.disk_space().free >= needed_bytes_ + block &&
            parts_.folder.disk().has(needed_bytes_, parts_.stored.owner);
 }
 

@@ -37,7 +37,7 @@ public:
     std::optional<Budget::Reservation> ask_memory() override;
     std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const override;
     void end(const v1::JobReport& ending) override;
-    void wait_for_room(const NoRoomError& why) override;
+    void wait_for_room(const NoRoomError& why, std::chrono::duration<double> run) override;
     bool has_room() override;
     void run_on_disk_queue(std::function<void()> task) override { parts_.folder.disk_queue().add(std::move(task)); }
 
@@ -46,10 +46,9 @@ public:
 
 private:
     Parts parts_;
-    // The job's result found no room: how much it needs at least, and when to look again. Each time, the pause is twice as long: the job
-    // may need much more, and a run that ends without room is lost work.
+    // The job's result found no room: how much it needs at least, and when to look again.
     std::uint64_t needed_bytes_ = 0;
-    std::chrono::seconds pause_{0};
+    bool has_waited_ = false;
     std::chrono::steady_clock::time_point next_check_{};
 };
 
