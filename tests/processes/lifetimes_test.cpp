@@ -1,15 +1,23 @@
 // Tests lifetimes. Lists stay valid after later calls of their engine, destroyed box arrays leave no descriptors open,
 // and a forked process cannot use its parent's engine.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <thread>
 #include <vector>
 
 #include "octopair/error.hpp"
 #include "processes/leftovers.hpp"
+#include "samples/random.hpp"
 #include "samples/scenes.hpp"
+#include "support/cases.hpp"
 
 namespace octopair::test {
 namespace {
@@ -85,6 +93,57 @@ TEST_F(WorkerLifetimes, AForkedProcessLeavesTheWorkersAlone) {
     engine->find_pairs({boxes}, list);
     EXPECT_EQ(list.to_vector(), expected(boxes));
     EXPECT_EQ(worker_faults(*engine).ended, 0u);
+}
+
+/// Starts the test application (application.cpp), which starts workers.
+pid_t start_application() {
+    const pid_t id = ::fork();
+    if (id != 0) return id;
+    (void)::dup2(::open("/dev/null", O_WRONLY), 1);
+    (void)::execl(OCTOPAIR_BAD_APPLICATION, "application", "busy", nullptr);
+    ::_exit(127);
+}
+
+/// Waits for the children that have ended. Returns whether there are no others.
+bool all_ended() {
+    while (::waitpid(-1, nullptr, WNOHANG) > 0) {
+    }
+    return test::children_of(::getpid()).empty();
+}
+
+/// Returns the workers of an application that run their program, which may not be loaded yet. Before, for some microseconds, a child
+/// has not run a single instruction; Linux cannot arm the parent-death signal of a process that is stopped then.
+std::vector<pid_t> workers_of(pid_t application) {
+    std::vector<pid_t> workers;
+    for (const test::ProcessStatus& one : test::all_processes()) {
+        if (one.parent == application && one.name == "octopair-worker") workers.push_back(one.id);
+    }
+    return workers;
+}
+
+/// Workers get signals at random moments of their first 50 ms, and then the application is killed.
+TEST_F(WorkerLifetimes, NoWorkerOutlivesItsClient) {
+    ASSERT_EQ(::prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // workers without a parent become children of this process
+    samples::RandomStream random(test::test_seed(1), 1);
+    const auto pause = [&] { std::this_thread::sleep_for(std::chrono::microseconds(random.below(25'000))); };
+    const std::uint64_t most = test::case_count(60);
+    for (std::uint64_t i = 0; i < most; ++i) {
+        const pid_t application = start_application();
+        ASSERT_GT(application, 0);
+        pause();
+        constexpr std::array<int, 4> signals = {SIGSTOP, SIGSTOP, SIGKILL, SIGTERM};
+        for (const pid_t worker : workers_of(application)) (void)::kill(worker, signals[random.below(4)]);
+        pause();
+        for (const pid_t worker : workers_of(application)) (void)::kill(worker, SIGSTOP);
+        (void)::kill(application, SIGKILL);
+        if (test::comes_true(all_ended, std::chrono::seconds(10))) continue;
+        for (const pid_t left : test::children_of(::getpid())) {
+            ADD_FAILURE() << "process " << left << " is left of application " << i;
+            (void)::kill(left, SIGKILL);
+        }
+    }
+    EXPECT_TRUE(test::comes_true(all_ended, std::chrono::seconds(10)));
+    (void)::prctl(PR_SET_CHILD_SUBREAPER, 0);
 }
 
 }  // namespace

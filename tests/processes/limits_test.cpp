@@ -167,29 +167,39 @@ TEST_F(WorkerLimits, OfAddressSpace) {
     EXPECT_GT(refused, 1u);
 }
 
-/// Returns the exit status of a child that may not start processes: 0 if the engine reports the right error. Gives up
-/// the superuser's rights first, because the superuser has no such limit.
-int fail_without_processes() {
-    if (::getuid() == 0 && ::setuid(65534) != 0) return 0;
-    const rlimit none{1, 1};
-    if (::setrlimit(RLIMIT_NPROC, &none) != 0) return 0;
+/// How a child ended that may start few processes and threads.
+enum class FewProcesses : std::uint8_t { right, refused, wrong_error, not_tested };
+
+/// Gives up the superuser's rights first, because the superuser has no such limit.
+FewProcesses call_with_few_processes(rlim_t most) {
+    if (::getuid() == 0 && ::setuid(65534) != 0) return FewProcesses::not_tested;
+    const rlimit few{most, most};
+    if (::access(OCTOPAIR_TRUE_WORKER, X_OK) != 0 || ::setrlimit(RLIMIT_NPROC, &few) != 0)
+        return FewProcesses::not_tested;
     try {
         const auto engine = make_process_engine(2);
         (void)engine->count_pairs(Objects{std::span<const Box3f>()});
-        return 1;
+        return FewProcesses::right;
     } catch (const Error& error) {
-        return error.code() == ErrorCode::resource_limit || error.code() == ErrorCode::engine_failed ? 0 : 2;
+        std::fprintf(stderr, "%llu: %s\n", static_cast<unsigned long long>(most), error.what());
+        return error.code() == ErrorCode::resource_limit ? FewProcesses::refused : FewProcesses::wrong_error;
     }
 }
 
+/// The worker program, too, starts a thread.
 TEST_F(WorkerLimits, OfProcesses) {
-    const pid_t child = ::fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) ::_exit(fail_without_processes());
-    int status = -1;
-    ASSERT_EQ(::waitpid(child, &status, 0), child);
-    EXPECT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 0);
+    for (rlim_t most = 1; most <= 8; ++most) {
+        const pid_t child = ::fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) ::_exit(int(call_with_few_processes(most)));
+        int status = -1;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        ASSERT_TRUE(WIFEXITED(status));
+        const auto end = FewProcesses(WEXITSTATUS(status));
+        if (end == FewProcesses::not_tested) GTEST_SKIP() << "this user cannot be limited";
+        EXPECT_NE(int(end), int(FewProcesses::wrong_error)) << most;
+        if (most == 1) EXPECT_EQ(int(end), int(FewProcesses::refused));
+    }
 }
 
 }  // namespace

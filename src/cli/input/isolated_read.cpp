@@ -113,8 +113,9 @@ void limit_memory([[maybe_unused]] const std::string& path) {
 #endif
 }
 
-[[noreturn]] void run_child(int pipe, const std::string& path, const io::SceneContent& content) {
+[[noreturn]] void run_child(pid_t parent, int pipe, const std::string& path, const io::SceneContent& content) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) std::_Exit(0);  // it ended before
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
     limit_memory(path);
@@ -145,9 +146,10 @@ public:
         if (::pipe2(ends, O_CLOEXEC) != 0) fail_io(path, "cannot make a pipe", errno);
         pipe_ = Descriptor(ends[0]);
         const Descriptor writing(ends[1]);
+        const pid_t parent = ::getpid();
         id_ = ::fork();
         if (id_ < 0) throw Error(ErrorCode::resource_limit, fmt::format("{}: cannot start a process to read it", path));
-        if (id_ == 0) run_child(writing.number(), path, content);
+        if (id_ == 0) run_child(parent, writing.number(), path, content);
     }
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;

@@ -3,17 +3,15 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <utility>
 
+#include "base/child_process.hpp"
 #include "base/stop.hpp"
 #include "octopair/error.hpp"
-
-extern char** environ;
 
 namespace octopair::cli {
 
@@ -23,14 +21,11 @@ constexpr auto answer_timeout = std::chrono::seconds(60);
 
 [[noreturn]] void fail_browser(const std::string& what) { throw Error(ErrorCode::io_failed, "the browser " + what); }
 
-/// Returns the ends of a pipe, reading end first. Their numbers are too large to be descriptors 0 to 4 of a child.
+/// Returns the ends of a pipe, reading end first.
 std::pair<Descriptor, Descriptor> make_pipe() {
     std::array<int, 2> ends;
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail_browser("cannot be started: no pipe");
-    const Descriptor low_read(ends[0]), low_write(ends[1]);
-    constexpr int first = 10;
-    return {Descriptor(::fcntl(low_read.number(), F_DUPFD_CLOEXEC, first)),
-            Descriptor(::fcntl(low_write.number(), F_DUPFD_CLOEXEC, first))};
+    return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
 /// Starts a program with `commands` as descriptor 3 and `answers` as descriptor 4. Returns -1 if that fails.
@@ -39,23 +34,8 @@ pid_t start_browser(const std::vector<std::string>& words, const Descriptor& com
     arguments.reserve(words.size() + 1);
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    for (const int descriptor : {0, 1, 2}) posix_spawn_file_actions_addopen(&files, descriptor, "/dev/null", O_RDWR, 0);
-    posix_spawn_file_actions_adddup2(&files, commands.number(), 3);
-    posix_spawn_file_actions_adddup2(&files, answers.number(), 4);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
-    pid_t child = -1;
-    const int error = ::posix_spawn(&child, words.front().c_str(), &files, &attributes, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    posix_spawnattr_destroy(&attributes);
-    return error == 0 ? child : -1;
+    const std::array<int, 2> descriptors = {commands.number(), answers.number()};
+    return start_child({words.front(), arguments, descriptors});
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void WorkerPool::count_fault(std::uint64_t& fault) {
 /// Starts a worker for a slot and sends it the control block. Throws: Error after three failed starts.
 void WorkerPool::start(unsigned slot) {
     Member& member = pool_[slot];
-    std::string how;
+    ProcessEnd end;
     for (unsigned i = 0; i < worker_limits::max_failed_starts; ++i) {
         member.process = nullptr;
         view_.slot(slot).attached.store(0);
@@ -75,14 +75,16 @@ void WorkerPool::start(unsigned slot) {
         member.process = std::make_unique<WorkerProcess>(program_, slot);
         member.started_at = Clock::now();
         if (member.process->send_region(control_region, control_memory_)) return;
-        how = member.process->end();
+        end = member.process->end();
     }
     member.process = nullptr;
-    throw_cannot_start(how);
+    throw_cannot_start(end);
 }
 
-void WorkerPool::throw_cannot_start(const std::string& how) const {
-    throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + how + ": " + program_);
+void WorkerPool::throw_cannot_start(const ProcessEnd& end) const {
+    if (end.lacked_resources)
+        throw Error(ErrorCode::resource_limit, "worker processes get no memory, threads or descriptors: " + program_);
+    throw Error(ErrorCode::engine_failed, "worker processes end at their start, " + end.how + ": " + program_);
 }
 
 /// Replaces workers that ended between passes or could not be started before.
@@ -237,14 +239,14 @@ std::uint64_t WorkerPool::events() const {
 void WorkerPool::handle_lost_worker(unsigned slot, bool stopped, const PassWatch& watch) {
     Member& member = pool_[slot];
     const bool attached = view_.slot(slot).attached.load() != 0;
-    const std::string how = member.process->end();
+    const ProcessEnd end = member.process->end();
     member.process = nullptr;
     count_fault(stopped ? faults_.stopped : faults_.ended);
     try {
         member.failed_starts = attached ? 0 : member.failed_starts + 1;
         if (member.failed_starts >= worker_limits::max_failed_starts) {
             member.failed_starts = 0;
-            throw_cannot_start(how);
+            throw_cannot_start(end);
         }
         if (finished(slot)) return;
         if (attached) count_death(slot);

@@ -80,7 +80,7 @@ private:
         unsigned deaths_between_shares = 0;  ///< consecutive early deaths outside any share
     };
     void start(unsigned slot);
-    [[noreturn]] void throw_cannot_start(const std::string& how) const;
+    [[noreturn]] void throw_cannot_start(const ProcessEnd& end) const;
     void restart_workers();
     void publish_pass(const Pass& pass);
     void poll(const PassWatch& watch, bool over, bool check);

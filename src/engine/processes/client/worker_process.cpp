@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/child_process.hpp"
 #include "engine/processes/client/spawner.hpp"
 #include "engine/processes/worker/worker.hpp"
 #include "octopair/error.hpp"
@@ -33,48 +33,6 @@ constexpr unsigned polls_per_proc_read = 8;
                 "cannot start the worker program " + program + ": " + std::strerror(error));
 }
 
-/// Start conditions of a worker: its socket, no other descriptor of the application, no signal blocked or ignored, and its
-/// own process group. An interrupt from the keyboard then reaches only the application.
-class SpawnSettings {
-public:
-    explicit SpawnSettings(int socket) {
-        bool good = ::posix_spawn_file_actions_init(&actions_) == 0;
-        good = good && ::posix_spawnattr_init(&attributes_) == 0;
-        good = good && ::posix_spawn_file_actions_adddup2(&actions_, socket, worker_socket) == 0;
-        good = good && ::posix_spawn_file_actions_addopen(&actions_, 0, "/dev/null", O_RDONLY, 0) == 0;
-        good = good && ::posix_spawn_file_actions_addopen(&actions_, 1, "/dev/null", O_WRONLY, 0) == 0;
-        // If the application has closed stderr, a descriptor of shared memory would get its number and receive error text.
-        if (::fcntl(2, F_GETFD) < 0) {
-            good = good && ::posix_spawn_file_actions_addopen(&actions_, 2, "/dev/null", O_WRONLY, 0) == 0;
-        }
-        good = good && ::posix_spawn_file_actions_addclosefrom_np(&actions_, worker_socket + 1) == 0;
-        sigset_t all, none;
-        ::sigfillset(&all);
-        ::sigemptyset(&none);
-        ::sigdelset(&all, SIGKILL);
-        ::sigdelset(&all, SIGSTOP);
-        good = good && ::posix_spawnattr_setsigdefault(&attributes_, &all) == 0;
-        good = good && ::posix_spawnattr_setsigmask(&attributes_, &none) == 0;
-        good = good && ::posix_spawnattr_setpgroup(&attributes_, 0) == 0;
-        constexpr short flags = POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP;
-        good = good && ::posix_spawnattr_setflags(&attributes_, flags) == 0;
-        if (!good) throw Error(ErrorCode::resource_limit, "cannot prepare to start a worker process");
-    }
-    ~SpawnSettings() {
-        ::posix_spawn_file_actions_destroy(&actions_);
-        ::posix_spawnattr_destroy(&attributes_);
-    }
-    SpawnSettings(const SpawnSettings&) = delete;
-    SpawnSettings& operator=(const SpawnSettings&) = delete;
-
-    const posix_spawn_file_actions_t* actions() const { return &actions_; }
-    const posix_spawnattr_t* attributes() const { return &attributes_; }
-
-private:
-    posix_spawn_file_actions_t actions_{};
-    posix_spawnattr_t attributes_{};
-};
-
 /// Returns true if the process ended within the time; -1: waits without a limit.
 bool wait_for_end(const Descriptor& handle, int max_milliseconds) {
     pollfd waiting{handle.number(), POLLIN, 0};
@@ -85,24 +43,27 @@ bool wait_for_end(const Descriptor& handle, int max_milliseconds) {
     return ready > 0;
 }
 
-std::string describe_end(const siginfo_t& info) {
-    if (info.si_pid == 0) return "for an unknown reason";
-    if (info.si_code == CLD_EXITED) return "with exit status " + std::to_string(info.si_status);
-    return "by signal " + std::to_string(info.si_status);
+ProcessEnd end_of(const siginfo_t& info) {
+    if (info.si_pid == 0) return {"for an unknown reason"};
+    if (info.si_code == CLD_EXITED)
+        return {"with exit status " + std::to_string(info.si_status), info.si_status == worker_lacks_resources};
+    return {"by signal " + std::to_string(info.si_status)};
 }
 
 }  // namespace
 
 WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_(::getpid()) {
     SocketPair sockets = make_socket_pair();
-    const SpawnSettings settings(sockets.theirs.number());
     std::string name = "octopair-worker", number = std::to_string(slot);
     const std::array<char*, 3> arguments = {name.data(), number.data(), nullptr};
+    const std::array<int, 1> descriptors = {sockets.theirs.number()};
+    static_assert(worker_socket == 3, "the number of the first descriptor that a child gets");
+    const ChildProgram child{program, arguments, descriptors, true};
     int error = 0;
     try {
         run_on_spawner([&] {
-            error = ::posix_spawn(&id_, program.c_str(), settings.actions(), settings.attributes(), arguments.data(),
-                                  environ);
+            id_ = start_child(child);
+            error = id_ < 0 ? errno : 0;
         });
     } catch (const std::system_error& no_thread) {
         error = no_thread.code().value();
@@ -139,8 +100,8 @@ bool WorkerProcess::is_stopped_in_proc() const {
     return name_end != nullptr && std::strncmp(name_end, ") T", 3) == 0;
 }
 
-std::string WorkerProcess::end() {
-    if (!handle_.open()) return "for an unknown reason";
+ProcessEnd WorkerProcess::end() {
+    if (!handle_.open()) return end_of({});
     siginfo_t info{};
     if (::getpid() == owner_) {
         (void)::syscall(SYS_pidfd_send_signal, handle_.number(), SIGKILL, nullptr, 0);
@@ -151,7 +112,7 @@ std::string WorkerProcess::end() {
     }
     handle_ = Descriptor();
     socket_ = Descriptor();
-    return describe_end(info);
+    return end_of(info);
 }
 
 bool WorkerProcess::send_region(std::uint32_t number, const SharedMemory& memory) {

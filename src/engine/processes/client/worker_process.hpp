@@ -16,6 +16,12 @@ namespace octopair {
 
 enum class ProcessState : std::uint8_t { runs, stopped, ended };
 
+/// How a process ended.
+struct ProcessEnd {
+    std::string how;                ///< for messages
+    bool lacked_resources = false;  ///< the system refused memory, a thread or a descriptor
+};
+
 class WorkerProcess {
 public:
     /// Starts `program` for a slot.
@@ -29,8 +35,8 @@ public:
 
     /// Returns the current state of the process. Does not wait.
     ProcessState poll_state();
-    /// Kills the process and waits for its end. Returns a description of how it ended, for messages.
-    std::string end();
+    /// Kills the process and waits for its end.
+    ProcessEnd end();
 
     /// Sends a region unless it was sent before. Returns false if the message cannot be sent.
     bool send_region(std::uint32_t number, const SharedMemory& memory);

@@ -10,6 +10,8 @@ namespace octopair {
 
 /// File descriptor of a worker's socket to the client.
 inline constexpr int worker_socket = 3;
+/// Exit status of a worker for which the system has no memory, thread or descriptor.
+inline constexpr int worker_lacks_resources = 5;
 
 /// Serves `slot` and never returns. Calls `gone` on another thread when the client has ended; `gone` must end the process.
 /// Throws: Error if the worker cannot attach to the client, or cannot map a region.

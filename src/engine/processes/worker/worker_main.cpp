@@ -9,13 +9,16 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
+#include <system_error>
 
 #include "engine/processes/worker/worker.hpp"
+#include "octopair/error.hpp"
 
 namespace {
 
-/// Makes the system kill this process when its parent ends, even if this process is stopped. Ends it if the parent has ended
-/// before: the parent is the process that made the socket.
+/// Makes the system kill this process when its parent ends. start_child() has done that, but another program may have started this one.
+/// Ends this process if the parent has ended before: the parent is the process that made the socket.
 void die_with_parent() {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ucred maker{};
@@ -37,6 +40,13 @@ int main(int count, char** arguments) {
     die_with_parent();
     try {
         octopair::run_worker(octopair::Descriptor(octopair::worker_socket), slot, nullptr, [] { ::_exit(0); });
+    } catch (const octopair::Error& failure) {
+        std::fprintf(stderr, "octopair-worker: %s\n", failure.what());
+        return failure.code() == octopair::ErrorCode::resource_limit ? octopair::worker_lacks_resources : 1;
+    } catch (const std::bad_alloc&) {
+        return octopair::worker_lacks_resources;
+    } catch (const std::system_error&) {  // no thread
+        return octopair::worker_lacks_resources;
     } catch (const std::exception& failure) {
         std::fprintf(stderr, "octopair-worker: %s\n", failure.what());
         return 1;

@@ -1,0 +1,30 @@
+// start_child(): starts a program that dies with the thread that started it.
+//
+// posix_spawn() cannot arm the parent-death signal. A program could arm it itself, but only once it is loaded: until then a child that is
+// stopped would outlive its parent.
+#pragma once
+
+#include <sys/types.h>
+
+#include <span>
+#include <string>
+
+#include "base/private_export.hpp"
+
+namespace octopair {
+
+struct ChildProgram {
+    static constexpr int max_descriptors = 4;
+
+    std::string path;
+    std::span<char* const> arguments;  ///< with the name of the program, and a null pointer at the end
+    /// Descriptors that the program gets as 3, 4, ... It gets no others but 0, 1 and 2. At most max_descriptors.
+    std::span<const int> descriptors;
+    bool keeps_stderr = false;  ///< false: 2 is /dev/null, as 0 and 1 are
+};
+
+/// Starts a program in a process group of its own, with no signal blocked or ignored. The system kills it when the calling thread ends.
+/// Returns its process id, or -1 with `errno`. Does not copy the memory of this process. Thread safety: safe.
+OCTOPAIR_PRIVATE_EXPORT pid_t start_child(const ChildProgram& program);
+
+}  // namespace octopair
