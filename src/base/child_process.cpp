@@ -66,10 +66,11 @@ OCTOPAIR_NOT_SANITIZED bool arrange_descriptors(const Start& start) {
     return true;
 }
 
+/// The result becomes the exit status.
 OCTOPAIR_NOT_SANITIZED int run_child(void* argument) {
     Start& start = *static_cast<Start*>(argument);
     // After this, the end of the parent ends this process. It may have ended before.
-    if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != start.parent) ::_exit(0);
+    if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != start.parent) return 0;
     struct sigaction standard {};
     standard.sa_handler = SIG_DFL;
     for (int signal = 1; signal < NSIG; ++signal) (void)::sigaction(signal, &standard, nullptr);
@@ -78,7 +79,7 @@ OCTOPAIR_NOT_SANITIZED int run_child(void* argument) {
     if (::setpgid(0, 0) == 0 && arrange_descriptors(start) && ::sigprocmask(SIG_SETMASK, &none, nullptr) == 0)
         ::execve(start.path, start.arguments, environ);
     start.error = errno;
-    ::_exit(127);
+    return 127;
 }
 
 }  // namespace
