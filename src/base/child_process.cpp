@@ -49,8 +49,8 @@ OCTOPAIR_NOT_SANITIZED void close_from(int first) {
 /// Gives the program its descriptors, and closes all others. Returns false after an error.
 OCTOPAIR_NOT_SANITIZED bool arrange_descriptors(const Start& start) {
     const int behind = first_descriptor + start.descriptor_count;
-    int copies[ChildProgram::
-                   max_descriptors];  // above all numbers that the program gets, so that none is overwritten too early
+    // First copies, above all numbers that the program gets, so that no descriptor is overwritten too early.
+    int copies[ChildProgram::max_descriptors];
     for (int i = 0; i < start.descriptor_count; ++i) {
         copies[i] = ::fcntl(start.descriptors[i], F_DUPFD, behind);
         if (copies[i] < 0) return false;

@@ -314,13 +314,54 @@ TEST_F(TokenLines, MayHoldHashes) {
               file + ": line 1: sha256: must be followed by 64 hexadecimal digits");
 }
 
+/// A line that would let in nobody, or somebody else, is an error.
+TEST_F(TokenLines, ThatAreNearlyRightAreRefused) {
+    const std::string hash = "ec5f5bd74fe6158aa9084539e49b1dc8564f45d7cb2fb548090013acd3b643eb";
+    const std::string begin = folder_.file("tokens") + ": line 1: ";
+    for (const std::string name :
+         {"SHA256:", "Sha256:", "sha-256:", "sha512:", "SHA256=", "sha256=", "md5:", "sha256$"})
+        EXPECT_EQ(wrong("anna " + name + hash), begin + "a hash must be written as sha256: and 64 hexadecimal digits")
+            << name;
+    for (const std::string name : {"token:anna", "\357\273\277anna", "an\1na"})
+        EXPECT_EQ(wrong(name + " anna-0123456789ab").find(begin + "a name "), 0u) << name;
+    for (const std::string end : {"UNTIL=2099-12-31", "until=2099-12-31 x", "2099-12-31"})
+        EXPECT_EQ(wrong("anna anna-0123456789ab " + end),
+                  begin + "a line must be NAME TOKEN, or NAME TOKEN until=TIME");
+    EXPECT_TRUE(accepts("anna anna-0123456789ab"));
+}
+
 TEST_F(TokenLines, MayExpire) {
     EXPECT_TRUE(accepts("anna anna-0123456789ab until=2099-12-31"));
     EXPECT_TRUE(accepts("anna anna-0123456789ab until=2099-12-31T23:59:59Z"));
     EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29"));
     EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29T12:00:00Z"));
     const std::string file = folder_.file("tokens");
-    for (const char* time : {"tomorrow", "2099-13-01", "2099-01-01T12:00", "2099-01-01 12:00"})
+    for (const char* time : {"tomorrow",
+                             "2099-13-01",
+                             "2099-01-01T12:00",
+                             "2099-01-01 12:00",
+                             "2030-02-31",
+                             "2030-02-29",
+                             "2030-04-31",
+                             "2030-00-01",
+                             "2030-01-00",
+                             "2030-1-5",
+                             "2030-01-5",
+                             "20300-01-05",
+                             "02030-01-05",
+                             "2030-01-32",
+                             "2030/01/05",
+                             "+030-01-05",
+                             "2030-01-05T24:00:00Z",
+                             "2030-01-05T23:60:00Z",
+                             "2030-01-05T23:59:60Z",
+                             "2030-01-05T23:59:59",
+                             "2030-01-05T23:59:59z",
+                             "2030-01-05T23:59:59+00:00",
+                             "2030-01-05T1:00:00Z",
+                             "2030-01-05Z",
+                             "2030-01-05x",
+                             ""})
         EXPECT_NE(wrong("anna anna-0123456789ab until=" + std::string(time)).find(file + ": line 1: "),
                   std::string::npos);
 }

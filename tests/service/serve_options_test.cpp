@@ -1,4 +1,7 @@
 // Tests the options of `octopair serve`, in a file and on the command line, and the refused options.
+#include <utility>
+#include <vector>
+
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -28,7 +31,6 @@ protected:
 
 TEST_F(ServeOptions, UnknownKeysNameFileAndKey) {
     EXPECT_EQ(refused("max-jbos = 5\n"), "octopair: c.toml: max-jbos: not an option of 'serve'\n");
-    EXPECT_EQ(refused("[limits]\nmax-jobs = 5\n").find("octopair: c.toml: limits"), 0u);
     EXPECT_EQ(refused("config = 'd.toml'\n"), "octopair: c.toml: config: not an option of 'serve'\n");
 }
 
@@ -41,8 +43,52 @@ TEST_F(ServeOptions, WrongValuesNameFileAndKey) {
     EXPECT_EQ(refused("stall = 0\n"), "octopair: c.toml: stall: --stall: at least 1 second\n");
     EXPECT_EQ(refused("keep = 0\n"), "octopair: c.toml: keep: --keep: at least 1 second\n");
     EXPECT_EQ(refused("state = ''\n"), "octopair: c.toml: state: --state: must name a folder\n");
-    EXPECT_EQ(refused("max-jobs = [1, 2]\n"), "octopair: c.toml: max-jobs: needs exactly one value\n");
+    EXPECT_EQ(refused("quiet = 1\n"), "octopair: c.toml: quiet: --quiet: '1' is neither true nor false\n");
     EXPECT_EQ(refused("grace = 1\nlog = 'x'\n").find("octopair: c.toml: log: --log: 'x' is not a valid value"), 0u);
+}
+
+/// Lines that are nearly right.
+TEST_F(ServeOptions, LinesInAnotherFormAreRefused) {
+    const std::string shape = "a line must be NAME = VALUE, or begin with #",
+                      word = "a value must be one word, or in quotes";
+    const std::string missing = "a value is missing", open = "a quote is not closed";
+    for (const auto& [line, why] : std::vector<std::pair<std::string, std::string>>{
+             {"[limits]", shape},
+             {"[]", shape},
+             {"[default]", shape},
+             {"[limits", shape},
+             {"= 5", shape},
+             {"quiet", shape},
+             {"max-jobs 5", shape},
+             {"max-jobs: 5", shape},
+             {"max_jobs = 5", shape},
+             {"Max-Jobs = 5", shape},
+             {"; a comment", shape},
+             {"// a comment", shape},
+             {"\"max-jobs\" = 5", shape},
+             {"\xEF\xBB\xBFmax-jobs = 5", shape},
+             {"''", shape},
+             {"max-jobs =", missing},
+             {"max-jobs = # 5", missing},
+             {"max-jobs = [5]", missing},
+             {"max-jobs = {a = 5}", missing},
+             {"max-jobs = = 5", missing},
+             {"max-jobs = 5 6", word},
+             {"max-jobs = 5, 6", word},
+             {"max-jobs = 5;", word},
+             {"max-jobs = 5 = 6", word},
+             {"tokens = \"a\"b", word},
+             {"tokens = a\"b\"", word},
+             {"tokens = \"\"\"a\"\"\"", word},
+             {"tokens = \"a\" \"b\"", word},
+             {"tokens = \"a", open},
+             {"tokens = 'a\"", open},
+             {"tokens = \"a\\x62\"", "a value with a backslash must be in single quotes"}}) {
+        EXPECT_EQ(refused("# right\n" + line + "\n"), "octopair: c.toml: line 2: " + why + "\n") << line;
+    }
+    write_file(file("c.toml"), "\r\n  threads=1#one\r\n\tquiet = true  # no log\r\n max-memory\t= '2G'\ngrace = \"3\"");
+    EXPECT_EQ(served("--config c.toml --listen unix:socket").status, 0) << content("log");
+    EXPECT_EQ(content("log"), "");
 }
 
 TEST_F(ServeOptions, MissingFileIsNamed) {

@@ -30,6 +30,8 @@ bool Option::is_given() const { return option_->count() > 0; }
 
 void Option::set_text(const std::string& text) {
     const bool is_flag = option_->get_expected_min() == 0;
+    if (is_flag && text != "true" && text != "false")
+        throw Error(ErrorCode::usage, option_->get_name() + ": '" + text + "' is neither true nor false");
     try {
         option_->add_result(is_flag ? option_->get_flag_value(option_->get_lnames().front(), text) : text);
         option_->run_callback();
@@ -101,14 +103,6 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
         throw Error(ErrorCode::usage, std::string(error.what()) + " (see " + app_->get_name() + " --help)");
     }
     return std::nullopt;
-}
-
-std::vector<ConfigEntry> parse_config(std::istream& file) {
-    std::vector<ConfigEntry> entries;
-    for (const CLI::ConfigItem& item : CLI::ConfigTOML().from_config(file)) {
-        entries.push_back({item.fullname(), item.inputs});
-    }
-    return entries;
 }
 
 }  // namespace octopair::cli

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <functional>
-#include <iosfwd>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,7 +37,7 @@ public:
 
     /// Returns whether the option has a value from the command line, the environment, or set_text().
     bool is_given() const;
-    /// Sets and parses a value, as if it were on the command line.
+    /// Sets and parses a value, as if it were on the command line. The value of a flag is true or false.
     /// Throws: Error{usage} if the value is invalid; what the option's reader throws.
     void set_text(const std::string& text);
 
@@ -103,15 +102,5 @@ public:
 private:
     std::unique_ptr<CLI::App> app_;
 };
-
-/// A line KEY = VALUE or KEY = [VALUE, ...] of a configuration file.
-struct ConfigEntry {
-    std::string key;  ///< KEY, or SECTION.KEY for a key in a section
-    std::vector<std::string> values;
-};
-
-/// Returns the entries of a TOML file.
-/// Requires: the caller is a callback of a command, because CommandLine::parse() reports the syntax errors.
-std::vector<ConfigEntry> parse_config(std::istream& file);
 
 }  // namespace octopair::cli

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 #include "base/io_failure.hpp"
@@ -15,8 +16,8 @@ namespace octopair::cli {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& file, const std::string& key, const std::string& why) {
-    throw Error(ErrorCode::usage, file + ": " + key + ": " + why);
+[[noreturn]] void refuse(const std::string& file, const std::string& place, const std::string& why) {
+    throw Error(ErrorCode::usage, file + ": " + place + ": " + why);
 }
 
 /// Returns the text of a file. Refuses other data: messages about them would show them, which may be secret or garble the terminal.
@@ -36,25 +37,98 @@ std::string text_of(const std::string& file) {
     return text;
 }
 
-std::vector<ConfigEntry> entries_of(const std::string& file) {
+/// A line NAME = VALUE.
+struct Entry {
+    std::string name, value;
+};
+
+/// Thrown for a line in another form.
+struct WrongLine {
+    const char* why;
+};
+
+/// Reads a line from left to right. Its members throw WrongLine.
+class LineReader {
+public:
+    explicit LineReader(std::string_view line) : rest_(line) {
+        if (rest_.ends_with('\r')) rest_.remove_suffix(1);
+        skip_blanks();
+    }
+
+    /// Returns whether nothing is left but a comment.
+    bool ends() const { return rest_.empty() || rest_.front() == '#'; }
+
+    Entry entry() {
+        Entry entry;
+        entry.name = take(rest_.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-"));
+        skip_blanks();
+        if (entry.name.empty() || !rest_.starts_with('='))
+            throw WrongLine{"a line must be NAME = VALUE, or begin with #"};
+        rest_.remove_prefix(1);
+        skip_blanks();
+        entry.value = rest_.starts_with('"') || rest_.starts_with('\'') ? quoted() : plain();
+        skip_blanks();
+        if (!ends()) throw WrongLine{"a value must be one word, or in quotes"};
+        return entry;
+    }
+
+private:
+    void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
+    std::string take(std::size_t length) {
+        std::string taken(rest_.substr(0, length));
+        rest_.remove_prefix(taken.size());
+        return taken;
+    }
+
+    std::string plain() {
+        std::string value = take(rest_.find_first_of(" \t\"'#,;=[]{}"));
+        if (value.empty()) throw WrongLine{"a value is missing"};
+        return value;
+    }
+    std::string quoted() {
+        const char quote = rest_.front();
+        rest_.remove_prefix(1);
+        const std::size_t end = rest_.find(quote);
+        if (end == std::string_view::npos) throw WrongLine{"a quote is not closed"};
+        std::string value = take(end);
+        rest_.remove_prefix(1);
+        if (quote == '"' && value.find('\\') != std::string::npos)
+            throw WrongLine{"a value with a backslash must be in single quotes"};
+        return value;
+    }
+
+    std::string_view rest_;
+};
+
+std::vector<Entry> entries_of(const std::string& file) {
     std::istringstream text(text_of(file));
-    return parse_config(text);
+    std::vector<Entry> entries;
+    std::size_t number = 0;
+    for (std::string line; std::getline(text, line);) {
+        ++number;
+        try {
+            LineReader reader(line);
+            if (!reader.ends()) entries.push_back(reader.entry());
+        } catch (const WrongLine& wrong) {
+            refuse(file, "line " + std::to_string(number), wrong.why);
+        }
+    }
+    return entries;
 }
 
 }  // namespace
 
 void apply_config(const Command& command, const std::string& file) {
     std::set<std::string> seen;
-    for (const auto& [key, values] : entries_of(file)) {
+    for (const auto& [key, value] : entries_of(file)) {
         std::optional<Option> option = command.find_option("--" + key);
         if (!option || key == "config" || key == "help") {
             refuse(file, key, "not an option of '" + command.name() + "'");
         }
         if (!seen.insert(key).second) refuse(file, key, "set twice");
         if (option->is_given()) continue;
-        if (values.size() != 1) refuse(file, key, "needs exactly one value");
         try {
-            option->set_text(values.front());
+            option->set_text(value);
         } catch (const Error& error) {
             refuse(file, key, error.what());
         }

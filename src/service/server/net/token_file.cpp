@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <ctime>
 #include <sstream>
 
 #include "octopair/error.hpp"
@@ -30,18 +29,40 @@ std::optional<TokenDigest> digest_from(std::string_view digits) {
     return digest;
 }
 
+/// Returns whether `text` has the form of `form`, where 0 stands for any digit.
+bool has_form(std::string_view text, std::string_view form) {
+    return std::equal(text.begin(), text.end(), form.begin(), form.end(),
+                      [](char c, char f) { return f == '0' ? c >= '0' && c <= '9' : c == f; });
+}
+
 /// Returns the time that `text` gives in UTC, the end of the day for a date, or nothing if it is neither a date nor a time.
-std::optional<Time> time_from(const std::string& text) {
-    std::tm parts{};
-    const char* const date_end = ::strptime(text.c_str(), "%Y-%m-%d", &parts);
-    if (date_end == nullptr) return {};
-    if (*date_end == '\0') {
-        parts.tm_mday += 1;
-    } else {
-        const char* const end = ::strptime(date_end, "T%H:%M:%SZ", &parts);
-        if (end == nullptr || *end != '\0') return {};
-    }
-    return std::chrono::system_clock::from_time_t(::timegm(&parts));
+std::optional<Time> time_from(std::string_view text) {
+    using namespace std::chrono;
+    constexpr std::string_view date_form = "0000-00-00", time_form = "0000-00-00T00:00:00Z";
+    if (!has_form(text, date_form) && !has_form(text, time_form)) return {};
+    const auto number = [&](std::size_t at, std::size_t digits) {
+        int value = 0;
+        (void)std::from_chars(text.data() + at, text.data() + at + digits, value);
+        return value;
+    };
+    const year_month_day date{year(number(0, 4)), month(unsigned(number(5, 2))), day(unsigned(number(8, 2)))};
+    if (!date.ok()) return {};
+    if (text.size() == date_form.size()) return sys_days(date) + days(1);
+    const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
+    if (hour > 23 || minute > 59 || second > 59) return {};
+    return sys_days(date) + hours(hour) + minutes(minute) + seconds(second);
+}
+
+/// Returns whether a token looks like a hash in another form than that of a token file, such as SHA256:... or sha512:...
+bool is_other_hash(std::string_view word) {
+    constexpr std::size_t shortest_hash = 32;
+    const std::size_t sign = word.find_first_of(":=$");
+    if (sign == std::string_view::npos) return false;
+    std::string name(word.substr(0, sign));
+    std::ranges::transform(name, name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    const std::string_view digits = word.substr(sign + 1);
+    const bool hexadecimal = digits.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+    return name.starts_with("sha") || (hexadecimal && digits.size() >= shortest_hash);
 }
 
 /// A line of the file. Its members throw Error{bad_input} that names the line.
@@ -61,11 +82,19 @@ struct Line {
             if (!digest) refuse("sha256: must be followed by 64 hexadecimal digits");
             return *digest;
         }
+        if (is_other_hash(word)) refuse("a hash must be written as sha256: and 64 hexadecimal digits");
         if (word.size() < shortest_token) refuse("a token must have at least 16 bytes");
         return digest_of(word);
     }
 
-    Time until(const std::string& word) const {
+    void check_name(std::string_view name) const {
+        const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7F'; };
+        if (std::any_of(name.begin(), name.end(), is_control) || name.starts_with("\xEF\xBB\xBF"))
+            refuse("a name has no control characters, and no byte order mark before it");
+        if (name.starts_with("token:")) refuse("a name is written without token:, which only the role file has");
+    }
+
+    Time until(std::string_view word) const {
         if (!word.starts_with(expires)) refuse("a line must be NAME TOKEN, or NAME TOKEN until=TIME");
         const auto time = time_from(word.substr(expires.size()));
         if (!time) refuse("until= must be followed by a date as 2027-01-31, or a time as 2027-01-31T12:00:00Z");
@@ -90,6 +119,7 @@ std::vector<Token> read_token_file(const std::string& path) {
         std::istringstream words(text);
         std::string name, token, more, rest;
         if (!(words >> name) || name.front() == '#') continue;
+        line.check_name(name);
         if (!(words >> token)) line.refuse("a line must be NAME TOKEN, or NAME TOKEN until=TIME");
         Token read{name, line.digest(token), {}};
         if (words >> more) read.until = line.until(more);
