@@ -3,10 +3,10 @@
 
     llvm-cov export -skip-functions -skip-expansions ... | unreached_failures.py ROOT LIST
 
-A failure is a `throw`, a call of a function that is [[noreturn]], or a block of `catch`. ROOT is the checkout. LIST is a page with
-the failures to leave out, one in a line of the form "- `FILE`: `CODE`", where CODE is the line of the source. Prints
-the others as FILE:LINE: CODE, then the entries of LIST that are out of date, because a test reaches the failure or the line is gone. The
-exit status is 1 if there are any.
+A failure is a `throw`, a call of a function that is [[noreturn]], or a block of `catch`. ROOT is the checkout. LIST is a file with
+the failures to leave out, one in a line of the form "FILE: CODE", where CODE is the line of the source, below comments with their reasons.
+Prints the others as FILE:LINE: CODE, then the entries of LIST that are out of date, because a test reaches the failure or the line is
+gone. The exit status is 1 if there are any.
 """
 import bisect
 import collections
@@ -18,7 +18,7 @@ import sys
 # Comments, strings and characters.
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 NORETURN = re.compile(r"\[\[noreturn\]\][^;{(]*?(\w+)\(")
-ENTRY = re.compile(r"^- `([^`]+)`: `(.+)`$")
+ENTRY = re.compile(r"^([^#:]+): (.+)$")
 
 
 def code_of(text):

@@ -55,6 +55,8 @@ TEST(PlainMesh, ErrorsNameTheLine) {
     EXPECT_EQ(refused("OFF\n4000000000 0 0\n"),
               "m.off: line 2: the number of vertices is 4000000000; at most 4 is possible");
     EXPECT_EQ(refused("4OFF\n"), "m.off: line 1: not a header that octopair reads: OFF, COFF, NOFF, CNOFF or STOFF");
+    EXPECT_EQ(refused("OFF\n0 1 0\n3 0 0 0\n"), "m.off: line 3: a face has corners, but there are no vertices");
+    EXPECT_EQ(refused("OFF\n-1 0 0\n"), "m.off: line 2: the number of vertices is '-1', not a number without sign");
     EXPECT_EQ(refused("OFF BINARY\n"), "m.off: line 1: octopair reads OFF files as text only");
     EXPECT_EQ(refused(""), "m.off: ends where the header should follow");
 }
@@ -136,6 +138,23 @@ TEST(PlainMesh, PlySaysWhatIsWrong) {
               "m.ply: line 2: the format is not ascii, binary_little_endian or binary_big_endian");
     EXPECT_EQ(refused("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n"),
               "m.ply: its vertices have no x, y or z");
+    const std::string vertices =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    const std::string places = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+    const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
+    for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
+             {"plx\n", "line 1: 'ply' is expected"},
+             {"ply\nproperty float x\n", "line 2: a property comes before the first element"},
+             {"ply\nelement vertex 1\nproperty real x\n",
+              "line 3: a property has no type of PLY: char, uchar, short, ushort, int, uint, float or double"},
+             {"ply\nelement vertex 1\nproperty list float int x\n", "line 3: the length of a list is not an integer"},
+             {vertices + "element face 1\nproperty int a\n" + places + "1\n", "its faces have no list vertex_indices"},
+             {vertices + faces + places + "3 0 1 3\n", "face 0 has the corner 3, but there are 3 vertices"},
+             {vertices + faces + places + "-3 0 1 2\n", "a list has an impossible length"},
+             {vertices + "element tristrips 1\nproperty list int int vertex_indices\n" + places + "3 0 1 2\n",
+              "has triangle strips, which octopair does not read"}}) {
+        EXPECT_EQ(refused(text), "m.ply: " + why);
+    }
 }
 
 /// A triangle as a binary STL file.
@@ -168,6 +187,11 @@ TEST(PlainMesh, StlIsTextOrBinary) {
     EXPECT_EQ(refused(binary_stl("").substr(0, 100)),
               "m.stl: says that it has 1 triangles, but it is too short for them");
     EXPECT_EQ(refused("solid\nfacet normal 0 0 1\nvertex 1 2 3\n"), "m.stl: line 3: 'outer loop' is expected");
+    EXPECT_EQ(refused("solid\nfacette\n"), "m.stl: line 2: 'facet' or 'endsolid' is expected");
+    EXPECT_EQ(refused("solid\nendsolid\nsolyd\n"), "m.stl: line 3: 'solid' is expected");
+    std::string infinite = binary_stl("");
+    infinite.replace(84 + 12, 4, "\x00\x00\x80\x7F", 4);
+    EXPECT_EQ(refused(infinite), "m.stl: triangle 0 has a coordinate that is not finite");
     EXPECT_EQ(refused(""), "m.stl: has no solid");
 }
 

@@ -228,5 +228,39 @@ TEST(ShapeBoxes, BadShapesAndObjectsAreNamed) {
     EXPECT_NE(refusal(made).find("end poses"), std::string::npos);
 }
 
+TEST(ShapedObjects, MotionsMustBeRigidAndPlanesDoNotTurn) {
+    const Pose place{}, turned = make_pose({1, 2, 3}, {0.8, 0.6, 0, 0});
+    Pose mirrored = place;
+    mirrored.rows[0][0] = -1;
+    Made made;
+    made.add(shape::ConvexHull{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, place);
+    made.end_poses = {turned};
+    EXPECT_EQ(refusal(made), "");
+    made.end_poses = {mirrored};
+    EXPECT_EQ(refusal(made), "object 0: no rotation and translation leads from its pose to its end pose");
+    made.add(shape::Plane{{1, 0, 0}, 0}, place);
+    made.end_poses = {turned, place};
+    EXPECT_EQ(refusal(made), "");
+    made.end_poses[1] = turned;
+    EXPECT_EQ(refusal(made), "object 1 is a plane that rotates; planes may only be moved");
+}
+
+TEST(ShapedObjects, PaddingsAreFiniteAndNotBelowZero) {
+    Made made;
+    made.add(shape::Sphere{1}, {});
+    for (const double wrong : {-1.0, double(NAN), double(INFINITY)}) {
+        const std::vector<double> padding = {wrong};
+        ShapedObjects objects = made.all();
+        objects.padding = padding;
+        EXPECT_THROW(check(objects), Error) << wrong;
+    }
+}
+
+TEST(Geometry, PlanesHaveOffsetsThatFloat64Holds) {
+    EXPECT_EQ(refusal(shape::Plane{{0, 0, 1}, 1e300}), "");
+    EXPECT_EQ(refusal(shape::Plane{{0, 0, 1}, NAN}), "a plane's offset is not finite: nan");
+    EXPECT_NE(refusal(shape::Plane{{0, 0, 1e-100}, 1e300}).find("it is beyond float64"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace octopair::test

@@ -327,6 +327,7 @@ TEST_F(TokenLines, ThatAreNearlyRightAreRefused) {
     for (const std::string end : {"UNTIL=2099-12-31", "until=2099-12-31 x", "2099-12-31"})
         EXPECT_EQ(wrong("anna anna-0123456789ab " + end),
                   begin + "a line must be NAME TOKEN, or NAME TOKEN until=TIME");
+    EXPECT_EQ(wrong("anna anna-0123456789\303\244b"), begin + "a token must consist of printable ASCII characters");
     EXPECT_TRUE(accepts("anna anna-0123456789ab"));
 }
 

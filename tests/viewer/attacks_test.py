@@ -363,7 +363,7 @@ class BadInput(InFolder):
         self.refused(3, self.write('bad.csv', 'a,b,c\n1,2'))
         self.assertEqual(self.run_program('view', '--no-browser').returncode, 2)
 
-    def test_options(self):
+    def test_options_that_do_not_fit(self):
         scene_files.save_boxes(self.path('good.npy'), scene_files.random_boxes(1, 10))
         good, pairs = self.path('good.npy'), self.write('pairs.csv', 'a,b\n0,1\n')
         for stage in ('objects', 'features'):
@@ -372,6 +372,7 @@ class BadInput(InFolder):
             self.assertIn(options[0], self.refused(2, good, pairs, *options))
         self.assertIn('alone', self.refused(2, good, 'unix:none.socket'))
         self.assertIn('--up', self.refused(2, 'unix:none.socket', '--up', 'y'))
+        self.assertIn('--export', self.refused(2, 'unix:none.socket', '--export', self.path('x.html')))
         self.assertIn('--port', self.refused(2, good, '--export', self.path('x.html'), '--port', '7'))
         for address in ('foo:1', ':8080', '8080'):
             self.refused(2, good, '--listen', address)
