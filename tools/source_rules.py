@@ -5,6 +5,7 @@
 
 Prints one line for each violation, and exits 1.
 """
+import ast
 import pathlib
 import re
 import sys
@@ -45,6 +46,18 @@ def has_head(path, lines):
     return bool(lines) and (lines[0].startswith("// ") or (path.suffix == ".cpp" and any(h.exists() for h in headers)))
 
 
+def doubled_definitions(text):
+    """Yields (line number, violation) for each function or class of Python that a later one of the same name replaces."""
+    for body in (node.body for node in ast.walk(ast.parse(text)) if isinstance(node, (ast.Module, ast.ClassDef))):
+        seen = set()
+        for node in body:
+            # A decorator may use the definition before, as that of a property's setter does.
+            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.decorator_list:
+                if node.name in seen:
+                    yield node.lineno, f"'{node.name}' is defined twice; the second definition hides the first"
+                seen.add(node.name)
+
+
 def complaints_of(path, parts):
     """Yields (line number, violation) for a file; line 0 means the whole file."""
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -58,6 +71,8 @@ def complaints_of(path, parts):
             yield 0, "the file has no head comment"
         if path.suffix == ".hpp" and "#pragma once" not in lines and not path.name.endswith("-inl.hpp"):
             yield 0, "no #pragma once"
+    if path.suffix == ".py":
+        yield from doubled_definitions("\n".join(lines))
     rules = list(EVERYWHERE) if path.name != "source_rules.py" else []
     if is_code:
         rules += IN_CODE
