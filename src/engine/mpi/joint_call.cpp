@@ -126,10 +126,16 @@ void JointCall::refuse(const BoxSource& source, std::size_t own) const {
         [&](std::size_t number) { return named_from(number); });
 }
 
-void join_gather(Communicator& comm) { (void)exchange_parameters(comm, {.kind = CallKind::gather}); }
+void join_gather(Communicator& comm) {
+    CallParameters own{};
+    own.kind = CallKind::gather;
+    (void)exchange_parameters(comm, own);
+}
 
 void join_cancelled(Communicator& comm) {
-    (void)exchange_parameters(comm, {.kind = CallKind::cancelled});
+    CallParameters own{};
+    own.kind = CallKind::cancelled;
+    (void)exchange_parameters(comm, own);
     Agreement(comm).together([] { throw Error(ErrorCode::cancelled, "cancelled"); });
 }
 

@@ -267,7 +267,9 @@ public:
     }
     HttpConnection(const HttpConnection&) = delete;
     HttpConnection& operator=(const HttpConnection&) = delete;
-    ~HttpConnection() override { host_.went(*this); }
+    ~HttpConnection() override {
+        if (stranger_) host_.went(*this);
+    }
 
     const std::string& address() const override { return address_; }
     void cut() override {
@@ -308,7 +310,7 @@ private:
                 request_, http::status::forbidden,
                 "Only pages of this viewer, with its token, get an answer. Use the address that octopair printed."));
         }
-        host_.went(*this);
+        if (std::exchange(stranger_, false)) host_.went(*this);
         if (!address) return write(respond_text(request_, http::status::bad_request, "invalid address"));
         if (websocket::is_upgrade(request_)) return upgrade(*address);
         if (request_.method() != http::verb::get && request_.method() != http::verb::head) {
@@ -373,6 +375,7 @@ private:
     std::optional<Counted> counted_;
     ConnectionHost& host_;
     std::string address_;
+    bool stranger_ = true;  // before a request that was answered; only then the last owner is on the thread of the host
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{max_header + 4096};
     std::optional<http::request_parser<http::empty_body>> parser_;

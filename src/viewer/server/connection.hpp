@@ -50,7 +50,7 @@ public:
     virtual void opened() = 0;
     virtual void closed() = 0;
     virtual void came(Stranger& stranger) = 0;
-    /// The stranger has ended, or is one no longer. May be called again.
+    /// The stranger has ended, or is one no longer.
     virtual void went(Stranger& stranger) = 0;
     virtual void joined(WebSocket& socket) = 0;
     virtual void left(WebSocket& socket) = 0;

@@ -57,6 +57,7 @@ private:
 };
 
 /// Counts the begins of calls without TLS. gRPC's C++ interface has processors for secure credentials alone.
+// NOLINTNEXTLINE(readability-function-size): gRPC's parameters.
 void process_insecure(void* listener, grpc_auth_context* context, const grpc_metadata*, std::size_t,
                       grpc_process_auth_metadata_done_cb done, void* call) {
     const auto find_number = [&]() -> std::uint64_t {
