@@ -70,7 +70,10 @@ OCTOPAIR_NOT_SANITIZED bool arrange_descriptors(const Start& start) {
 OCTOPAIR_NOT_SANITIZED int run_child(void* argument) {
     Start& start = *static_cast<Start*>(argument);
     // After this, the end of the parent ends this process. It may have ended before.
-    if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != start.parent) return 0;
+    if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != start.parent) {
+        start.error = ESRCH;
+        return 127;
+    }
     struct sigaction standard {};
     standard.sa_handler = SIG_DFL;
     for (int signal = 1; signal < NSIG; ++signal) (void)::sigaction(signal, &standard, nullptr);

@@ -134,7 +134,7 @@ protected:
 
 TEST_F(ResettingConnections, AreCutForCallsThatDoNotEnd) {
     const std::uint64_t one = connect("anna"), other = connect("anna");
-    for (std::uint64_t i = 0; i < terms_.max_open_calls; ++i) EXPECT_TRUE(watch_.note_begin(one, now_));
+    for (double i = 0; i < terms_.max_open_calls; ++i) EXPECT_TRUE(watch_.note_begin(one, now_));
     watch_.note_end(one, false, now_);
     EXPECT_TRUE(watch_.note_begin(one, now_));
     EXPECT_FALSE(is_cut(one));
@@ -142,6 +142,16 @@ TEST_F(ResettingConnections, AreCutForCallsThatDoNotEnd) {
     EXPECT_TRUE(is_cut(one));
     EXPECT_FALSE(is_cut(other));
     EXPECT_TRUE(watch_.note_begin(other, now_));
+}
+
+/// gRPC does not tell of the ends of some calls.
+TEST_F(ResettingConnections, AreNotCutForCallsWhoseEndIsNotTold) {
+    const std::uint64_t anna = connect("anna");
+    for (double i = 0; i < 3 * terms_.max_open_calls; ++i) {
+        EXPECT_TRUE(watch_.note_begin(anna, now_));
+        now_ += 1s;
+    }
+    EXPECT_FALSE(is_cut(anna));
 }
 
 TEST_F(ResettingConnections, AreCutForManyResets) {

@@ -327,6 +327,9 @@ TEST_F(TokenLines, ThatAreNearlyRightAreRefused) {
     for (const std::string end : {"UNTIL=2099-12-31", "until=2099-12-31 x", "2099-12-31"})
         EXPECT_EQ(wrong("anna anna-0123456789ab " + end),
                   begin + "a line must be NAME TOKEN, or NAME TOKEN until=TIME");
+    write_secret(folder_.file("tokens"),
+                 "anna anna-0123456789ab\nberta shared-key:0123456789\nclara ShaBx0123456789abcdef=\n");
+    server_->reload();
     EXPECT_EQ(wrong("anna anna-0123456789\303\244b"), begin + "a token must consist of printable ASCII characters");
     EXPECT_TRUE(accepts("anna anna-0123456789ab"));
 }
@@ -334,6 +337,8 @@ TEST_F(TokenLines, ThatAreNearlyRightAreRefused) {
 TEST_F(TokenLines, MayExpire) {
     EXPECT_TRUE(accepts("anna anna-0123456789ab until=2099-12-31"));
     EXPECT_TRUE(accepts("anna anna-0123456789ab until=2099-12-31T23:59:59Z"));
+    EXPECT_TRUE(accepts("anna anna-0123456789ab until=9999-12-31"));
+    EXPECT_TRUE(accepts("anna anna-0123456789ab until=2262-05-01T00:00:00Z"));
     EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29"));
     EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29T12:00:00Z"));
     const std::string file = folder_.file("tokens");

@@ -76,6 +76,7 @@ TEST_F(ServeOptions, LinesInAnotherFormAreRefused) {
              {"max-jobs = [5]", missing},
              {"max-jobs = {a = 5}", missing},
              {"max-jobs = = 5", missing},
+             {"max-jobs = 5#6", word},
              {"max-jobs = 5 6", word},
              {"max-jobs = 5, 6", word},
              {"max-jobs = 5;", word},
@@ -89,7 +90,8 @@ TEST_F(ServeOptions, LinesInAnotherFormAreRefused) {
              {"tokens = \"a\\x62\"", "a value with a backslash must be in single quotes"}}) {
         EXPECT_EQ(refused("# right\n" + line + "\n"), "octopair: c.toml: line 2: " + why + "\n") << line;
     }
-    write_file(file("c.toml"), "\r\n  threads=1#one\r\n\tquiet = true  # no log\r\n max-memory\t= '2G'\ngrace = \"3\"");
+    write_file(file("c.toml"),
+               "\r\n  threads=1 #one\r\n\tquiet = true  # no log\r\n max-memory\t= '2G'\ngrace = \"3\"");
     EXPECT_EQ(served("--config c.toml --listen unix:socket").status, 0) << content("log");
     EXPECT_EQ(content("log"), "");
 }

@@ -66,9 +66,11 @@ public:
             throw WrongLine{"a line must be NAME = VALUE, or begin with #"};
         rest_.remove_prefix(1);
         skip_blanks();
-        entry.value = rest_.starts_with('"') || rest_.starts_with('\'') ? quoted() : plain();
+        const bool in_quotes = rest_.starts_with('"') || rest_.starts_with('\'');
+        entry.value = in_quotes ? quoted() : plain();
+        const bool unclear = !in_quotes && rest_.starts_with('#');  // part of the word, or a comment
         skip_blanks();
-        if (!ends()) throw WrongLine{"a value must be one word, or in quotes"};
+        if (unclear || !ends()) throw WrongLine{"a value must be one word, or in quotes"};
         return entry;
     }
 

@@ -167,8 +167,9 @@ private:
         for (const Stranger* stranger : strangers_) ++counts[stranger->address()];
         const auto most = std::max_element(counts.begin(), counts.end(),
                                            [](const auto& x, const auto& y) { return x.second < y.second; });
-        const auto oldest = std::find_if(strangers_.begin(), strangers_.end(),
-                                         [&](const Stranger* one) { return one->address() == most->first; });
+        const auto oldest = std::find_if(strangers_.begin(), strangers_.end(), [&](const Stranger* one) {
+            return counts.at(one->address()) == most->second;
+        });
         Stranger& cut = **oldest;
         strangers_.erase(oldest);
         cut.cut();
@@ -215,9 +216,10 @@ private:
         });
     }
 
-    /// Accepts the connections that wait. Returns false if one cannot be accepted, for example because the process has too many open files.
+    /// Accepts connections that wait, but few at a time, so that the requests of earlier ones are read before they would be cut. Returns false if one cannot be accepted, for example because the process has too many open files.
     bool accept_waiting() {
-        for (;;) {
+        constexpr int few = 16;
+        for (int i = 0; i < few; ++i) {
             const int connection = ::accept4(acceptor_.native_handle(), nullptr, nullptr, socket_flags);
             if (connection < 0) {
                 if (errno == EINTR || errno == ECONNABORTED) continue;
@@ -232,6 +234,7 @@ private:
             }
             if (accepts(socket)) serve_connection(std::move(socket), *this);
         }
+        return true;
     }
 
     /// Waits before the next connection is accepted.

@@ -123,7 +123,8 @@ ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, 
         cut_and_pace(found, now);
         return Admission::paused;
     }
-    if (terms_.max_per_client > 0 && open_connections(client.name) >= terms_.max_per_client) return Admission::too_many;
+    if (terms_.max_per_client > 0 && open_connections(client.name, now) >= terms_.max_per_client)
+        return Admission::too_many;
     known_[client.connection] = {found->peer.address, found->number, socket_of(found->connection.number()),
                                  client.name};
     unknown_.erase(found);
@@ -136,28 +137,29 @@ void ConnectionWatch::note_refused(const std::string& name, Clock::time_point no
     if (found != unknown_.end() && ++found->refused_calls > terms_.max_refused_calls) cut_and_pace(found, now);
 }
 
-std::uint64_t ConnectionWatch::open_connections(const std::string& client) {
-    forget_closed();
+std::uint64_t ConnectionWatch::open_connections(const std::string& client, Clock::time_point now) {
+    forget_closed(now);
     return std::uint64_t(
         std::count_if(known_.begin(), known_.end(), [&](const auto& known) { return known.second.client == client; }));
 }
 
 bool ConnectionWatch::Known::is_open() const { return socket_of(descriptor) == socket; }
 
-void ConnectionWatch::forget_closed() {
+void ConnectionWatch::forget_closed(Clock::time_point now) {
     std::erase_if(known_, [](const auto& known) { return !known.second.is_open(); });
-    std::erase_if(calls_, [&](const auto& calls) { return calls.second.open == 0 && !known_.contains(calls.first); });
+    std::erase_if(calls_, [&](const auto& calls) {
+        return now - calls.second.open.since > terms_.remembered && !known_.contains(calls.first);
+    });
     constexpr std::size_t least = 64;
     forget_from_ = std::max(least, 2 * calls_.size());
 }
 
 bool ConnectionWatch::note_begin(std::uint64_t number, Clock::time_point now) {
-    if (calls_.size() >= forget_from_) forget_closed();
-    Calls& calls = calls_[number];
-    if (calls.open < terms_.max_open_calls) {
-        ++calls.open;
-        return true;
-    }
+    if (calls_.size() >= forget_from_) forget_closed(now);
+    Recent& open = calls_[number].open;
+    add(open, terms_.forgotten_per_second, now);
+    if (open.count <= terms_.max_open_calls) return true;
+    open.count = terms_.max_open_calls;
     cut_known(number, now);
     return false;
 }
@@ -165,28 +167,30 @@ bool ConnectionWatch::note_begin(std::uint64_t number, Clock::time_point now) {
 void ConnectionWatch::note_end(std::uint64_t number, bool reset, Clock::time_point now) {
     const auto found = calls_.find(number);
     if (found == calls_.end()) return;
-    if (found->second.open > 0) --found->second.open;
+    found->second.open.count = std::max(0.0, found->second.open.count - 1);
     if (!reset) return;
     const auto known = known_.find(number);
     // The end of a connection resets all its calls.
     if (known == known_.end() || !known->second.is_open() || !received_by(known->second.descriptor).open) return;
     Recent& of_client = resets_[known->second.client];
-    add_reset(of_client, now);
-    add_reset(found->second.resets, now);
+    add(of_client, terms_.resets_per_second, now);
+    add(found->second.resets, terms_.resets_per_second, now);
     of_client.count = std::min(of_client.count, terms_.max_resets + 1);
     if (of_client.count > terms_.max_resets && found->second.resets.count > terms_.few_resets) cut_known(number, now);
 }
 
-void ConnectionWatch::add_reset(Recent& resets, Clock::time_point now) const {
-    const double seconds = std::chrono::duration<double>(now - resets.since).count();
-    resets = {std::max(0.0, resets.count - seconds * terms_.resets_per_second) + 1, now};
+void ConnectionWatch::add(Recent& recent, double per_second, Clock::time_point now) {
+    const double seconds = std::chrono::duration<double>(now - recent.since).count();
+    recent = {std::max(0.0, recent.count - seconds * per_second) + 1, now};
 }
 
 void ConnectionWatch::cut_known(std::uint64_t number, Clock::time_point now) {
     const auto found = known_.find(number);
     if (found == known_.end()) return;
-    if (found->second.is_open()) {
-        reset(found->second.descriptor);
+    // gRPC may close the connection meanwhile, and its number may be used again. A copy stays what it is.
+    const Descriptor copy(::fcntl(found->second.descriptor, F_DUPFD_CLOEXEC, 0));
+    if (copy.open() && socket_of(copy.number()) == found->second.socket) {
+        reset(copy.number());
         pace(found->second.address, now);
         paused_[found->second.client] = now + terms_.pause;
         ++cut_;

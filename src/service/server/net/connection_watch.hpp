@@ -43,7 +43,7 @@ public:
         std::chrono::milliseconds greeting{10'000};
         std::uint64_t max_bytes = 128 << 10;
         std::uint64_t max_refused_calls = 32;
-        std::uint64_t max_open_calls = 512;
+        double max_open_calls = 512, forgotten_per_second = 5;
         double max_resets = 256, resets_per_second = 50;  ///< at once, and then
         double few_resets = 16;                           ///< of a connection
         std::chrono::milliseconds pause{1000};
@@ -112,21 +112,21 @@ private:
         Clock::time_point since;
     };
 
-    /// The calls of a connection.
+    /// The calls of a connection. gRPC ends some calls without telling, for example those with a message that is too large. So open calls
+    /// are forgotten with time, as resets are, but more slowly.
     struct Calls {
-        std::uint64_t open = 0;
-        Recent resets;
+        Recent open, resets;
     };
 
     bool is_full(const std::string& address) const;
-    std::uint64_t open_connections(const std::string& client);
+    std::uint64_t open_connections(const std::string& client, Clock::time_point now);
     void cut_oldest();
     void cut(std::vector<Unknown>::iterator connection);
     void cut_and_pace(std::vector<Unknown>::iterator connection, Clock::time_point now);
     void cut_known(std::uint64_t number, Clock::time_point now);
     void pace(const std::string& address, Clock::time_point now);
-    void add_reset(Recent& resets, Clock::time_point now) const;
-    void forget_closed();
+    static void add(Recent& recent, double per_second, Clock::time_point now);
+    void forget_closed(Clock::time_point now);
     bool must_wait(const std::string& address, Clock::time_point now);
 
     const Terms terms_;

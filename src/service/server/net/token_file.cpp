@@ -47,6 +47,7 @@ std::optional<Time> time_from(std::string_view text) {
     };
     const year_month_day date{year(number(0, 4)), month(unsigned(number(5, 2))), day(unsigned(number(8, 2)))};
     if (!date.ok()) return {};
+    if (date.year() > year(2261)) return Time::max();  // the last whole year that system_clock holds
     if (text.size() == date_form.size()) return sys_days(date) + days(1);
     const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
     if (hour > 23 || minute > 59 || second > 59) return {};
@@ -60,9 +61,11 @@ bool is_other_hash(std::string_view word) {
     if (sign == std::string_view::npos) return false;
     std::string name(word.substr(0, sign));
     std::ranges::transform(name, name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    const bool is_sha =
+        name.starts_with("sha") && name.size() <= 7 && name.find_first_not_of("-0123456789", 3) == std::string::npos;
     const std::string_view digits = word.substr(sign + 1);
     const bool hexadecimal = digits.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
-    return name.starts_with("sha") || (hexadecimal && digits.size() >= shortest_hash);
+    return is_sha || (hexadecimal && digits.size() >= shortest_hash);
 }
 
 /// A line of the file. Its members throw Error{bad_input} that names the line.

@@ -51,7 +51,9 @@ void StoredJob::end(const v1::JobReport& ending) {
 }
 
 void StoredJob::wait_for_room(const NoRoomError& why, std::chrono::duration<double> run) {
-    needed_bytes_ = parts_.pairs->needed_bytes();
+    const std::uint64_t needed = parts_.pairs->needed_bytes();
+    const bool more = needed > needed_bytes_;
+    needed_bytes_ = needed;
     parts_.pairs->discard();
     parts_.folder.disk().check(parts_.disk.amount() + needed_bytes_);
     const std::uint64_t most = parts_.folder.disk_space().all;
@@ -59,15 +61,17 @@ void StoredJob::wait_for_room(const NoRoomError& why, std::chrono::duration<doub
         throw Error(ErrorCode::io_failed, "the result does not fit on the server's disk, which has " +
                                               std::to_string(most) + " bytes in all");
     }
-    if (!std::exchange(has_waited_, true)) {
+    if (pause_.count() == 0) {
         log_text(parts_.folder.log(), LogLevel::warning,
                  "job " + parts_.stored.spec.id() + ": waits for room for its result: " + why.what());
     }
-    // The result may need more than is known now, and a run that ends without room is lost work. So the pause is longer than the run.
+    // The result may need more than is known now, and a run that ends without room is lost work. So the pause is longer than most runs.
+    // If the room that was there did not suffice, something else is short, such as a quota: then each pause is longer than the last.
     constexpr std::chrono::duration<double> shortest(0.1), longest(60);
-    const auto pause = std::clamp<std::chrono::duration<double>>(8 * run, shortest, longest);
+    pause_ =
+        std::clamp<std::chrono::duration<double>>(more ? 8 * run : std::max(8 * run, 2 * pause_), shortest, longest);
     next_check_ =
-        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause);
+        std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause_);
 }
 
 bool StoredJob::has_room() {

@@ -48,7 +48,7 @@ private:
     Parts parts_;
     // The job's result found no room: how much it needs at least, and when to look again.
     std::uint64_t needed_bytes_ = 0;
-    bool has_waited_ = false;
+    std::chrono::duration<double> pause_{0};
     std::chrono::steady_clock::time_point next_check_{};
 };
 
