@@ -21,7 +21,7 @@ namespace {
 
 constexpr int first_descriptor = 3;
 
-/// What the child needs, in the memory of the parent.
+/// The child reads its settings here, in the memory of the parent.
 struct Start {
     const char* path;
     char* const* arguments;

@@ -1,4 +1,4 @@
-// What the ranks of `octopair detect` must have in common.
+// Facts that all ranks of `octopair detect` must share: its options and its inputs.
 #pragma once
 
 #include "cli/detect/frame_search.hpp"

@@ -17,7 +17,7 @@ struct SliceParameters {
     bool wide, padded;
 };
 
-/// What a rank calls. `cancelled`: any call, which was cancelled before it began.
+/// The function that a rank calls. `cancelled`: any function; the call was cancelled before it began.
 enum class CallKind : std::uint8_t { search, gather, cancelled };
 
 /// Parameters of a rank's call. Sent to all ranks. Those behind the kind are the parameters of a search.

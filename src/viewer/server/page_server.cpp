@@ -216,7 +216,8 @@ private:
         });
     }
 
-    /// Accepts connections that wait, but few at a time, so that the requests of earlier ones are read before they would be cut. Returns false if one cannot be accepted, for example because the process has too many open files.
+    /// Accepts connections that wait, but few at a time: the requests of these must be read before later connections cut them. Returns
+    /// false if one cannot be accepted, for example because the process has too many open files.
     bool accept_waiting() {
         constexpr int few = 16;
         for (int i = 0; i < few; ++i) {
