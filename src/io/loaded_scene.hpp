@@ -29,10 +29,12 @@ struct LoadedScene {
     /// Bound on the coordinates of meshes that were rounded to float32, in the file or by its reader. 0: none were. Coordinates before
     /// transforms count, too, in the unit of the world, and so do the translations of the transforms.
     double largest_rounded = 0;
-    std::vector<std::string> names;      ///< empty, or one name per object; an object without a name has an empty one
-    ObjectDetails details;               ///< empty, or a row per object
-    SceneSpace space;                    ///< axes and unit of the coordinates
-    std::optional<LoadedShapes> shapes;  ///< set if SceneContent::shapes is set and the file has shapes
+    std::vector<std::string> names;  ///< empty, or one name per object; an object without a name has an empty one
+    ObjectDetails details;           ///< empty, or a row per object
+    SceneSpace space;                ///< axes and unit of the coordinates
+    /// What a user should know about the files, for example that something was not read. Each is one line "FILE: ...".
+    std::vector<std::string> warnings;
+    std::optional<LoadedShapes> shapes;        ///< set if SceneContent::shapes is set and the file has shapes
     std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects
 
     bool lacks_boxes() const {

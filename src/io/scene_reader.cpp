@@ -152,8 +152,10 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     check_same_content(scenes, paths);
     LoadedScene joined;
     joined.moving = scenes.front().moving;
-    for (const LoadedScene& scene : scenes)
+    for (const LoadedScene& scene : scenes) {
         joined.largest_rounded = std::max(joined.largest_rounded, scene.largest_rounded);
+        joined.warnings.insert(joined.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+    }
     joined.space = joint_space(scenes);
     joined.frames = scenes.front().frames;
     bool named = false;

@@ -112,6 +112,21 @@ TEST_F(Detect, FailsOnCollisionWhenAsked) {
     EXPECT_EQ(run("detect together.npy --fail-on-collision --limit 0").status, 1);
 }
 
+TEST_F(Detect, AnInputWithoutObjectsIsAWarningOrAnError) {
+    save_boxes("empty.npy", {});
+    save_boxes("full.npy", {0, 2});
+    const Outcome found = run("detect full.npy --against empty.npy --count-only --stats s.json");
+    EXPECT_EQ(found.status, 0);
+    EXPECT_NE(found.err.find("warning     empty.npy: has no object\n"), std::string::npos) << found.err;
+    EXPECT_NE(content("s.json").find("empty.npy: has no object"), std::string::npos);
+    for (const char* inputs : {"full.npy empty.npy", "full.npy --against empty.npy", "empty.npy --events"}) {
+        const Outcome refused = run("detect " + std::string(inputs) + " --fail-on-collision");
+        EXPECT_EQ(refused.status, 2) << inputs;
+        EXPECT_NE(refused.err.find("empty.npy: has no object, so --fail-on-collision"), std::string::npos)
+            << refused.err;
+    }
+}
+
 TEST_F(Detect, StatsHoldEveryKey) {
     save_boxes("a.npy", {0, 0.5, 9});
     ASSERT_EQ(run("detect a.npy --output p.npy --stats s.json --threads 2 --quiet").status, 0);

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "cli/detect/precision.hpp"
+#include "cli/detect/tolerance.hpp"
 #include "cli/input/shaped_set.hpp"
 
 namespace octopair::cli {

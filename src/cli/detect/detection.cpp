@@ -7,7 +7,8 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/frame_search.hpp"
-#include "cli/detect/precision.hpp"
+#include "cli/detect/input_warnings.hpp"
+#include "cli/detect/tolerance.hpp"
 #include "io/json/json_fields.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
@@ -69,7 +70,11 @@ private:
         report_.engine = describe_engine(request_.engine);
         const bool whole =
             inputs_.first.total == inputs_.first.scene.objects && inputs_.second.total == inputs_.second.scene.objects;
-        if (whole) report_.warnings = coordinate_warnings(request_, sets());
+        if (request_.fail_on_collision) {
+            refuse_empty_parts(inputs_.first.parts);
+            refuse_empty_parts(inputs_.second.parts);
+        }
+        if (whole) report_.warnings = input_warnings(request_, sets());
 #ifdef OCTOPAIR_WITH_PIPELINE
         describe_shapes();
 #endif

@@ -69,7 +69,7 @@ struct DetectReport {
     bool tolerance_is_precision = false;                         ///< the tolerance is that of float32
     std::uint64_t open_objects = 0;                              ///< objects whose geometry is not closed
     std::vector<std::string> first_open;                         ///< names of the first of them
-    std::vector<std::string> warnings;                           ///< about the coordinates of the inputs
+    std::vector<std::string> warnings;                           ///< about the inputs, after input_warnings()
     std::optional<io::ChangeCounts> changes;                     ///< where there is a baseline
     std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
     std::uint64_t entries = 0;

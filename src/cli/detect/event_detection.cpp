@@ -8,6 +8,7 @@
 #include "base/timed.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/event_source.hpp"
+#include "cli/detect/input_warnings.hpp"
 #include "cli/input/frame_set.hpp"
 #include "cli/input/join.hpp"
 #include "io/files/atomic_file.hpp"
@@ -50,6 +51,10 @@ private:
             against_.emplace(std::vector{request_.against}, io::SceneContent{request_.mesh_objects}, stop_);
             frames = joint_frames(frames, against_->frames(), request_);
             sizes.against = against_->objects();
+        }
+        if (request_.fail_on_collision) {
+            refuse_empty_parts(inputs_->parts());
+            if (against_) refuse_empty_parts(against_->parts());
         }
         paddings_.emplace(request_, sizes, stop_);
         report_.frames = frames.frames;

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "cli/detect/exclusions.hpp"
-#include "cli/detect/precision.hpp"
+#include "cli/detect/tolerance.hpp"
 #include "cli/input/shaped_set.hpp"
 #include "octopair/filters.hpp"
 

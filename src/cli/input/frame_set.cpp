@@ -48,6 +48,7 @@ void FrameSet::open_moving(const std::vector<std::string>& paths) {
         counts.push_back(file ? io::FrameCount{file->shape().frames, true} : io::FrameCount{});
         if (!file) continue;
         objects_ += file->shape().objects;
+        still_.parts.push_back({path, file->shape().objects});
         wide_ |= file->wide();
         moving_.push_back({path, std::move(*file)});
     }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ public:
 
     /// Returns the number of objects in each frame.
     std::uint64_t objects() const { return objects_; }
+    /// Returns the files and their numbers of objects.
+    std::span<const Part> parts() const { return still_.parts; }
     const io::FrameCount& frames() const { return frames_; }
     /// Returns whether at least one file is float64.
     bool wide() const { return wide_; }
@@ -40,7 +43,7 @@ private:
 
     void open_moving(const std::vector<std::string>& paths);
 
-    InputSet still_;  // the objects of a scene that does not move; empty for a moving scene
+    InputSet still_;  // the objects of a scene that does not move; for a moving scene only its parts
     std::vector<MovingPart> moving_;
     std::uint64_t objects_ = 0;
     io::FrameCount frames_;

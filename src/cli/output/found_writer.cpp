@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/precision.hpp"
+#include "cli/detect/input_warnings.hpp"
+#include "cli/detect/tolerance.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats.hpp"
 #include "io/results/collision_writer.hpp"
@@ -146,7 +147,7 @@ std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, c
     if (request.margin > 0) report->add_fact("margin", fmt::format("{}", request.margin));
     const SetPair pair{sets.first, scene.join ? &sets.second : nullptr};
     if (form.features) report->add_fact("tolerance", fmt::format("{:.3g}", tolerance_of(request, pair)));
-    for (const std::string& warning : coordinate_warnings(request, pair)) report->add_note(warning);
+    for (const std::string& warning : input_warnings(request, pair)) report->add_note(warning);
     if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
     if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
     if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cli/detect/filter_chain.hpp"
-#include "cli/detect/precision.hpp"
+#include "cli/detect/input_warnings.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
 #include "cli/view/shown_shape.hpp"
@@ -73,7 +73,7 @@ viewer::SceneContents shown_scene(const DetectRequest& request, const InputSet& 
     contents.unit = chosen.unit.empty() ? set.scene.space.unit : chosen.unit;
     contents.margin = request.margin;
     contents.names = shown_names(set);
-    contents.notices = coordinate_warnings(request, {set, nullptr});
+    contents.notices = input_warnings(request, {set, nullptr});
 #ifdef OCTOPAIR_WITH_PIPELINE
     add_shapes(contents, set);
 #endif

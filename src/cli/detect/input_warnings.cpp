@@ -1,9 +1,11 @@
-#include "cli/detect/precision.hpp"
+#include "cli/detect/input_warnings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "io/files/failure.hpp"
 
 namespace octopair::cli {
 
@@ -43,20 +45,14 @@ std::string coarseness_of(const DetectRequest& request, const InputSet& set) {
 
 }  // namespace
 
-double tolerance_of(const DetectRequest& request, const SetPair& sets) {
-    if (request.pipeline.tolerance) return *request.pipeline.tolerance;
-    double largest = 0;
-    for (const InputSet* set : {&sets.first, sets.second}) {
-        if (set != nullptr) largest = std::max(largest, set->scene.largest_rounded);
-    }
-    constexpr double relative_step = 0x1p-23;
-    return 2 * largest * relative_step;
-}
-
-std::vector<std::string> coordinate_warnings(const DetectRequest& request, const SetPair& sets) {
+std::vector<std::string> input_warnings(const DetectRequest& request, const SetPair& sets) {
     std::vector<std::string> warnings;
     for (const InputSet* set : {&sets.first, sets.second}) {
         if (set == nullptr || set->parts.empty()) continue;
+        warnings.insert(warnings.end(), set->scene.warnings.begin(), set->scene.warnings.end());
+        for (const Part& part : set->parts) {
+            if (part.objects == 0) warnings.push_back(part.path + ": has no object");
+        }
         const std::string text = coarseness_of(request, *set);
         if (!text.empty()) warnings.push_back(text);
     }
@@ -69,6 +65,14 @@ std::vector<std::string> coordinate_warnings(const DetectRequest& request, const
     if (mixed)
         warnings.emplace_back("the formats of the inputs have different axes up; coordinates are used as they are");
     return warnings;
+}
+
+void refuse_empty_parts(std::span<const Part> parts) {
+    for (const Part& part : parts) {
+        if (part.objects > 0) continue;
+        io::refuse(part.path,
+                   "has no object, so --fail-on-collision checks nothing in it; leave out the file or the option");
+    }
 }
 
 }  // namespace octopair::cli
