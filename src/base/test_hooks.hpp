@@ -73,21 +73,22 @@ inline constexpr auto path_names = std::to_array<std::string_view>({
 /// Errors that a test can plant in the code, to verify that a check finds them.
 enum class Fault : unsigned {
     none,
-    begins_bit_cleared,      ///< a ghost loses the class bits that it brought into a nested octree
-    octant_border_open,      ///< a box that ends in the first cell of an octant does not touch it
-    window_end_open,         ///< a column that begins where the rows of a block end is not tested
-    cell_window_end_open,    ///< a column that begins in the last cell of a block of rows is not tested
-    cell_gap_too_small,      ///< a hit whose ends are in equal cells is certain
-    tile_end_open,           ///< a tile that begins where a tile of rows ends is not swept
-    handed_to_wrong_child,   ///< an entry is handed down to an octant that it does not touch
-    nested_space_moved,      ///< class bits of handed down entries are computed in a space that is shifted by one cell
-    stream_windows_overlap,  ///< a window begins with the last object of the previous window
-    sweep_repeats_block,     ///< a resumed sweep repeats its block of rows
-    part_joined_twice,       ///< two parts of a crowd are joined in both directions
-    rank_takes_neighbour,    ///< a rank's run of octants includes the first one of the next rank
-    positions_always_near,   ///< ranks send the lowest bits of positions, however far apart the positions are
+    begins_bit_cleared,       ///< a ghost loses the class bits that it brought into a nested octree
+    octant_border_open,       ///< a box that ends in the first cell of an octant does not touch it
+    window_end_open,          ///< a column that begins where the rows of a block end is not tested
+    cell_window_end_open,     ///< a column that begins in the last cell of a block of rows is not tested
+    cell_gap_too_small,       ///< a hit whose ends are in equal cells is certain
+    tile_end_open,            ///< a tile that begins where a tile of rows ends is not swept
+    handed_to_wrong_child,    ///< an entry is handed down to an octant that it does not touch
+    nested_space_moved,       ///< class bits of handed down entries are computed in a space that is shifted by one cell
+    stream_windows_overlap,   ///< a window begins with the last object of the previous window
+    sweep_repeats_block,      ///< a resumed sweep repeats its block of rows
+    part_joined_twice,        ///< two parts of a crowd are joined in both directions
+    rank_takes_neighbour,     ///< a rank's run of octants includes the first one of the next rank
+    positions_always_near,    ///< ranks send the lowest bits of positions, however far apart the positions are
+    overlap_called_touching,  ///< convex shapes that penetrate each other are called touching
 };
-inline constexpr unsigned fault_count = 14;
+inline constexpr unsigned fault_count = 15;
 
 /// Value of TestHooks::polls_before_stop with which no poll finds a stop request.
 inline constexpr std::int64_t never_stopped = std::numeric_limits<std::int64_t>::max();

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/test_hooks.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/convex_pair.hpp"
 #include "narrow_phase/depth_bounds.hpp"
@@ -61,7 +62,7 @@ void set_contact(const Contact& contact, std::uint32_t max_contacts, Finding& fi
 
 /// Sets the class according to the depth. A depth that is within rounding becomes 0.
 void set_class(double rounding, Finding& finding) {
-    const bool touches = finding.depth <= rounding;
+    const bool touches = finding.depth <= rounding || planted(Fault::overlap_called_touching);
     finding.collision_class = touches ? CollisionClass::touching : CollisionClass::penetrating;
     if (!touches) return;
     finding.depth = 0;

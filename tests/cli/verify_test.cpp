@@ -1,6 +1,10 @@
 // Tests `octopair detect --verify`: output for correct results, and the options that exclude --verify.
+#include <filesystem>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
+#include "base/test_hooks.hpp"
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -102,6 +106,42 @@ TEST_F(DetectVerify, WithExclusionsAndMeshes) {
     EXPECT_EQ(counted.status, 0) << counted.err;
     EXPECT_EQ(counted.out, "3\n");
 }
+#endif
+
+#ifdef OCTOPAIR_TEST_HOOKS
+class DetectVerifyFaults : public DetectVerify {
+protected:
+    /// Runs the program with a planted fault.
+    Outcome run_with(Fault fault, const std::string& arguments) const {
+        TestHooks hooks;
+        hooks.fault = fault;
+        write_file(file("hooks"), std::string(reinterpret_cast<const char*>(&hooks), sizeof hooks));
+        return shell("OCTOPAIR_TEST_HOOKS_FILE=hooks \"$P\" " + arguments);
+    }
+};
+
+TEST_F(DetectVerifyFaults, ALostPairEndsWithStatus6) {
+    const Outcome lost = run_with(Fault::octant_border_open, "detect a.npy --verify --quiet --output p.csv");
+    EXPECT_EQ(lost.status, 6) << lost.err;
+    EXPECT_NE(lost.err.find("pair"), std::string::npos) << lost.err;
+    EXPECT_FALSE(std::filesystem::exists(file("p.csv")));
+}
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+TEST_F(DetectVerifyFaults, AWrongClassEndsWithStatus6) {
+    write_file(file("scene.json"),
+               R"({"objects": [{"name": "a", "shape": {"type": "sphere", "radius": 1}},
+                               {"name": "b", "shape": {"type": "sphere", "radius": 1}, "position": [1, 0, 0]}]})");
+    const std::string arguments = "detect scene.json --stage features --verify --quiet --output p.csv";
+    const Outcome right = run_with(Fault::none, arguments);
+    EXPECT_EQ(right.status, 0) << right.err;
+    std::filesystem::remove(file("p.csv"));
+    const Outcome wrong = run_with(Fault::overlap_called_touching, arguments);
+    EXPECT_EQ(wrong.status, 6) << wrong.err;
+    EXPECT_NE(wrong.err.find("objects 0 and 1"), std::string::npos) << wrong.err;
+    EXPECT_FALSE(std::filesystem::exists(file("p.csv")));
+}
+#endif
 #endif
 
 TEST_F(DetectVerify, IsRefusedWhereItCannotBeDone) {
