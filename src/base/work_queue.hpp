@@ -56,8 +56,24 @@ public:
     /// waiting.end() if no waiting item can be worked on yet. `choose` runs with the queue locked, and again after `retry`.
     template <typename Choose, typename Work>
     void run(const Choose& choose, std::chrono::nanoseconds retry, const Work& work) {
+        constexpr std::chrono::hours rarely(1);
+        run(choose, retry, work, Idle{rarely, [] {}});
+    }
+
+    /// What a thread in run() does once, when no item has waited for `after`. `task` runs with the queue unlocked.
+    template <typename Task>
+    struct Idle {
+        std::chrono::nanoseconds after;
+        Task task;
+    };
+    template <typename Task>
+    Idle(std::chrono::nanoseconds, Task) -> Idle<Task>;
+
+    template <typename Choose, typename Work, typename Task>
+    void run(const Choose& choose, std::chrono::nanoseconds retry, const Work& work, const Idle<Task>& idle) {
         std::unique_lock lock(mutex_);
-        for (auto next = take(lock, choose, retry); next != in_work_.end(); next = take(lock, choose, retry)) {
+        const auto take_next = [&] { return take(lock, choose, retry, idle); };
+        for (auto next = take_next(); next != in_work_.end(); next = take_next()) {
             lock.unlock();
             work(*next);
             Items done;
@@ -120,17 +136,26 @@ private:
     }
 
     /// Waits for an item and moves it to those in work; returns in_work_.end() where run() is to return.
-    template <typename Choose>
+    template <typename Choose, typename Task>
     typename Items::iterator take(std::unique_lock<std::mutex>& lock, const Choose& choose,
-                                  std::chrono::nanoseconds retry) {
-        for (;;) {
+                                  std::chrono::nanoseconds retry, const Idle<Task>& idle) {
+        for (bool was_idle = false;;) {
             if (end_ == End::now || (end_ == End::when_empty && waiting_.empty())) return in_work_.end();
             const auto chosen = waiting_.empty() ? waiting_.end() : choose(waiting_);
             if (chosen != waiting_.end()) {
                 in_work_.splice(in_work_.end(), waiting_, chosen);
                 return std::prev(in_work_.end());
             }
-            waiting_.empty() ? changed_.wait(lock) : (void)changed_.wait_for(lock, retry);
+            if (!waiting_.empty()) {
+                changed_.wait_for(lock, retry);
+            } else if (was_idle) {
+                changed_.wait(lock);
+            } else if (changed_.wait_for(lock, idle.after) == std::cv_status::timeout && waiting_.empty()) {
+                was_idle = true;
+                lock.unlock();
+                idle.task();
+                lock.lock();
+            }
         }
     }
 

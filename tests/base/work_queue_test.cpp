@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -61,6 +62,25 @@ TEST(WorkQueue, AnItemInWorkIsStillAnItemOfTheQueue) {
         EXPECT_EQ(queue.items().size(), item == 1 ? 2u : 1u);
     });
     EXPECT_TRUE(queue.items().empty());
+}
+
+TEST(WorkQueue, AThreadThatIsIdleRunsItsTaskOnceUntilItHasWorked) {
+    WorkQueue<int> queue;
+    std::vector<std::string> done;
+    queue.add(1);
+    const auto first = [](WorkQueue<int>::Items& waiting) { return waiting.begin(); };
+    const auto work = [&](int item) { done.push_back("item " + std::to_string(item)); };
+    int times = 0;
+    const auto task = [&] {
+        done.push_back("idle");
+        if (++times == 1) {
+            queue.add(2);
+        } else {
+            queue.finish();
+        }
+    };
+    queue.run(first, std::chrono::hours(1), work, WorkQueue<int>::Idle{std::chrono::milliseconds(1), task});
+    EXPECT_EQ(done, (std::vector<std::string>{"item 1", "idle", "item 2", "idle"}));
 }
 
 TEST(WorkQueue, AnItemThatIsNotChosenWaitsUntilItIs) {

@@ -1,6 +1,9 @@
 // Tests that clients take turns: one with many jobs does not make the others wait for all of them.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <memory>
+
 #include "processes/leftovers.hpp"
 #include "service/gate.hpp"
 #include "service/guarded.hpp"
@@ -8,6 +11,7 @@
 #include "service/served.hpp"
 #include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/fair_order.hpp"
+#include "service/server/jobs/kept_engine.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
@@ -44,6 +48,21 @@ TEST(FairOrder, SharesAreEqualInWork) {
         order.begin(is_small ? "small" : "large", is_small ? 1 : 50);
     }
     EXPECT_NEAR(small / large, 1, 0.02);
+}
+
+TEST(FairOrder, WorkThatWasUnderestimatedCounts) {
+    FairOrder order;
+    order.begin("dense", 100);
+    order.begin("plain", 100);
+    order.add("dense", 250);
+    order.add("unknown", 1);
+    int plain = 0;
+    for (int i = 0; i < 10; ++i) {
+        const bool turn = order.start_of("plain") < order.start_of("dense");
+        plain += turn ? 1 : 0;
+        order.begin(turn ? "plain" : "dense", 100);
+    }
+    EXPECT_EQ(plain, 6) << "250 more than 100 are 3 turns";
 }
 
 TEST(FairOrder, IdleClientsCollectNoClaim) {
@@ -125,6 +144,62 @@ TEST_F(ServedFairness, OneJobPassesTheManyOfAnotherClient) {
     one.wait();
     EXPECT_LE(count(JobState::done), 10) << "first come, first served would be 20";
     for (Job& job : many_) job.wait();
+}
+
+/// Few objects can have so many pairs that a job takes long. One client cannot hold all engines of small jobs with them.
+TEST_F(ServedFairness, OneClientLeavesAnEngineOfSmallJobs) {
+    const Served served([this](service::ServerOptions& options) {
+        gated()(options);
+        options.engine_widths = {1, 3, 0};
+    });
+    const std::vector<Box3f> boxes = make_boxes("dense", 5'000, 1);
+    submit_greedy(served, boxes, 5);
+    ASSERT_TRUE(gate_.wait_for(2));
+    const auto engine = polite(served);
+    Job one = engine->submit(boxes);
+    ASSERT_TRUE(gate_.wait_for(3));
+    EXPECT_EQ(one.state(), JobState::running);
+    EXPECT_EQ(count(JobState::running), 2);
+    gate_.open();
+    one.wait();
+    for (Job& job : many_) job.wait();
+    EXPECT_EQ(count(JobState::done), 5);
+}
+
+/// Engines keep the memory of their largest job for later ones. A server gives it back when it is idle.
+TEST_F(ServedFairness, IdleEnginesAreMadeAnew) {
+    std::atomic<int> made = 0;
+    const Served served([&](service::ServerOptions& options) {
+        options.engine = [&](unsigned width) {
+            ++made;
+            return make_local_engine(width);
+        };
+        options.engine_widths = {1, 1, 1};
+        options.renewable_engines = true;
+    });
+    EXPECT_EQ(made, 3);
+    const auto engine = connect(served.address());
+    PairList pairs;
+    for (const std::size_t objects : {30'000u, 5'000u, 100u})
+        engine->find_pairs(make_boxes("dense", objects, 1), pairs);
+    ASSERT_TRUE(comes_true([&] { return made >= 6; }, std::chrono::minutes(1)));
+    const auto before = pairs.size();
+    engine->find_pairs(make_boxes("dense", 100, 1), pairs);
+    EXPECT_EQ(pairs.size(), before);
+}
+
+TEST(KeptEngine, IsNotMadeAnewWhileItIsInUse) {
+    service::KeptEngine kept([](unsigned width) { return make_local_engine(width); }, 1);
+    std::weak_ptr<Engine> first;
+    {
+        const auto used = kept.use();
+        first = used;
+        kept.renew();
+        EXPECT_EQ(kept.use(), used);
+    }
+    kept.renew();
+    EXPECT_TRUE(first.expired());
+    EXPECT_NE(kept.use(), nullptr);
 }
 
 /// Jobs of one client do not take the memory that a job of another client needs.

@@ -13,6 +13,7 @@
 #include <exception>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "base/control_group.hpp"
 #include "octopair/version.hpp"
@@ -23,13 +24,24 @@
 
 namespace octopair::cli {
 
+namespace {
+
+/// Returns how many jobs may run on threads of gRPC: all but one of these threads, so that one reads what other clients send. gRPC 1.51 has
+/// half as many as cores, at least 2 and at most 16.
+unsigned threads_for_instant_jobs() { return std::clamp(std::thread::hardware_concurrency() / 2, 2U, 16U) - 1; }
+
+}  // namespace
+
 service::ServerOptions server_options_of(const ServeRequest& request) {
     service::ServerOptions options = request.options;
     const EngineDescription described = describe_engine(request.engine);
     options.engine_name = described.engine;
     const unsigned width = described.threads + described.workers;
-    // With worker processes no job is instant, because every job wakes another process.
-    options.engine_widths = {width, width, request.engine.runs_in_caller() ? width : 0};
+    const bool local = request.engine.runs_in_caller();
+    // With worker processes no job is instant, because every job wakes another process. One engine more than cores for small jobs: a client
+    // can have all but one.
+    options.engine_widths = {width, width + (local ? 1 : 0), local ? std::min(width, threads_for_instant_jobs()) : 0};
+    options.renewable_engines = local;
     options.engine = [choice = request.engine](unsigned one_width) {
         return make_engine(choice.with_width(one_width));
     };

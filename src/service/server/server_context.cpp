@@ -51,7 +51,9 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
                                                                                   given.limits.state_bytes_per_client)},
                       log)),
       attached("", "", 0),
-      scheduler({given.engine, given.small_engine ? given.small_engine : given.engine}, given.engine_widths) {
+      scheduler({given.engine, given.small_engine ? given.small_engine : given.engine, given.renewable_engines,
+                 [this] { array_pool.clear(); }},
+                given.engine_widths) {
     if (!state) return;
     detached = std::make_shared<DetachedJobs>(*this);
     detached->restore();

@@ -46,8 +46,9 @@ struct ServerOptions {
     /// `listen`. Null: the server listens at `listen`.
     std::shared_ptr<Descriptor> listen_socket;
     EngineMaker engine;
-    EngineMaker small_engine;  ///< maker of engines for small jobs; null: `engine`
-    std::string engine_name;   ///< value of the option --engine
+    EngineMaker small_engine;        ///< maker of engines for small jobs; null: `engine`
+    bool renewable_engines = false;  ///< engines are cheap to make: idle ones are made anew, which gives back memory
+    std::string engine_name;         ///< value of the option --engine
     /// Returns how many workers of an engine were lost; null: the engines have no workers.
     std::function<std::uint64_t(const Engine&)> worker_faults;
     JobScheduler::Widths engine_widths;

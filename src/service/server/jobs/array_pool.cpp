@@ -52,6 +52,13 @@ void ArrayPool::give(const Engine& engine, AnyBoxes boxes) noexcept {
     }
 }
 
+void ArrayPool::clear() noexcept {
+    std::vector<Spare> freed;  // after the lock is released
+    const std::lock_guard lock(mutex_);
+    freed.swap(spares_);
+    bytes_ = 0;
+}
+
 std::uint64_t ArrayPool::bytes() const {
     const std::lock_guard lock(mutex_);
     return bytes_;

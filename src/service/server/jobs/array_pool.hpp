@@ -26,6 +26,8 @@ public:
     }
     /// Returns `boxes` to the pool. The pool frees arrays that are too small or too large, and the oldest ones when it is full.
     void give(const Engine& engine, AnyBoxes boxes) noexcept;
+    /// Frees all arrays of the pool.
+    void clear() noexcept;
     /// Returns the number of bytes in the pool.
     std::uint64_t bytes() const;
 

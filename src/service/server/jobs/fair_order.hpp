@@ -1,7 +1,8 @@
 // FairOrder: decides which client's job runs next, when clients have more jobs than the server can run.
 //
 // - Each client gets the same share of the work, however many jobs it has waiting.
-// - The work of a job is an estimate: its objects. A client that was idle gets no more than its share afterwards.
+// - The work of a job is estimated from its objects when it begins, and corrected when it ends: few objects can have many pairs. A client
+//   that was idle gets no more than its share afterwards.
 // - Source: Goyal, Vin, Cheng 1996, "Start-time fair queueing".
 #pragma once
 
@@ -25,6 +26,12 @@ public:
         ends_[client] = now_ + work;
         constexpr std::size_t many = 1000;
         if (ends_.size() > many) std::erase_if(ends_, [this](const auto& end) { return end.second <= now_; });
+    }
+
+    /// Notes that a job of a client took more work than begin() was told. `more` >= 0.
+    void add(const std::string& client, double more) {
+        const auto known = ends_.find(client);
+        if (known != ends_.end()) known->second += more;
     }
 
 private:

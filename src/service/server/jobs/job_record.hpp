@@ -39,7 +39,8 @@ public:
     virtual std::optional<Budget::Reservation> ask_memory() = 0;
     /// Reads the input into memory of `engine`. Throws: Error{io_failed} for a damaged file, Error{cancelled} after a stop
     /// request.
-    virtual std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const = 0;
+    virtual std::unique_ptr<UploadedInput> load(const std::shared_ptr<Engine>& engine,
+                                                const std::stop_token& stop) const = 0;
     /// Stores how the job ended. On return `ending` is on the disk. Throws: Error{io_failed}, NoRoomError.
     virtual void end(const v1::JobReport& ending) = 0;
     /// Deletes what was stored of the result, because there was no room for more. The job must then wait until has_room(). `run`: how long

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -18,11 +19,17 @@ constexpr std::chrono::milliseconds ask_again(20);
 
 /// Work of the smallest job, in objects: taking and answering it costs as much.
 constexpr std::uint64_t min_work = 1000;
+/// Objects of few pairs that a thread searches in a second. With it, the time that a job took becomes work in objects.
+constexpr double objects_per_second = 2e7;
+
+/// Returns the estimated work of a job, in objects.
+double work_of(const ServerJob& job) { return double(std::max<std::uint64_t>(object_count(job.spec()), min_work)); }
 
 }  // namespace
 
-JobScheduler::JobScheduler(const Makers& makers, const Widths& widths) : instant_(widths.instant) {
-    for (Instant& instant : instant_) instant.engine = makers.small(1);
+JobScheduler::JobScheduler(const Makers& makers, const Widths& widths)
+    : renewable_(makers.renewable), on_idle_(makers.on_idle), instant_(widths.instant) {
+    for (Instant& instant : instant_) instant.engine = std::make_unique<KeptEngine>(makers.small, 1);
     try {
         start(large_, makers.large, widths.large);
         for (unsigned i = 0; i < widths.small; ++i) start(small_, makers.small, 1);
@@ -41,35 +48,67 @@ void JobScheduler::stop() {
 }
 
 void JobScheduler::start(Lane& lane, const EngineMaker& maker, unsigned width) {
-    engines_.push_back(maker(width));
+    engines_.push_back(std::make_unique<KeptEngine>(maker, width));
+    {
+        const std::lock_guard lock(lane.mutex);
+        ++lane.engines;
+    }
     threads_.emplace_back([this, &lane, &engine = *engines_.back()] {
-        lane.queue.run([this, &lane](Queue::Items& jobs) { return next_ready(jobs, lane.order); }, ask_again,
-                       [&lane, &engine](const std::shared_ptr<ServerJob>& job) {
-                           if (job->run(engine) == ServerJob::Ran::queued_again) lane.queue.add(job);
-                       });
+        lane.queue.run([this, &lane](Queue::Items& jobs) { return next_ready(jobs, lane); }, ask_again,
+                       [this, &lane, &engine](const std::shared_ptr<ServerJob>& job) { run_next(lane, engine, job); },
+                       Queue::Idle{idle_before_renewal, [this, &lane, &engine] { renew_idle(lane, engine); }});
     });
+}
+
+void JobScheduler::run_next(Lane& lane, KeptEngine& engine, const std::shared_ptr<ServerJob>& job) {
+    const auto began = std::chrono::steady_clock::now();
+    const bool again = job->run(engine.use()) == ServerJob::Ran::queued_again;
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    {
+        const std::lock_guard lock(lane.mutex);
+        lane.order.add(job->owner(), std::max(0.0, took.count() * objects_per_second - work_of(*job)));
+        if (--lane.running[job->owner()] == 0) lane.running.erase(job->owner());
+    }
+    if (again) lane.queue.add(job);
+}
+
+/// Gives back memory, because the thread of `engine` had nothing to do for a while.
+void JobScheduler::renew_idle(Lane& lane, KeptEngine& engine) {
+    if (&lane == &large_ && on_idle_) on_idle_();
+    if (!renewable_) return;
+    try {
+        engine.renew();
+        if (&lane != &large_) return;
+        for (Instant& instant : instant_) instant.engine->renew();
+    } catch (const std::exception&) {  // no memory or no thread for a new engine: the old one stays
+    }
 }
 
 /// Returns the job whose turn it is among those that can run, or jobs.end(). Candidates are the first attached and the first detached
 /// job of each client. Jobs that wait for room for their results let all others pass.
-JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs, FairOrder& order) const {
+JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs, Lane& lane) const {
     struct Candidate {
         double start;
         Queue::Items::iterator job;
     };
+    const std::lock_guard lock(lane.mutex);
+    const unsigned most = std::max(1u, lane.engines - 1);
     std::vector<Candidate> candidates;
     std::set<std::pair<std::string_view, bool>> seen;
     for (auto job = jobs.begin(); job != jobs.end(); ++job) {
         if ((*job)->waits_for_room()) continue;
-        if (seen.emplace((*job)->owner(), (*job)->detached()).second)
-            candidates.push_back({order.start_of((*job)->owner()), job});
+        const std::string& owner = (*job)->owner();
+        const auto running = lane.running.find(owner);
+        if (running != lane.running.end() && running->second >= most) continue;
+        if (seen.emplace(owner, (*job)->detached()).second) candidates.push_back({lane.order.start_of(owner), job});
     }
     std::ranges::stable_sort(candidates, {}, &Candidate::start);
     bool detached_wait = holds_detached_;
     for (const auto& [start, job] : candidates) {
         if ((*job)->detached() && detached_wait) continue;
         if ((*job)->ask_memory()) {
-            order.begin((*job)->owner(), double(std::max<std::uint64_t>(object_count((*job)->spec()), min_work)));
+            lane.order.begin((*job)->owner(), work_of(**job));
+            ++lane.running[(*job)->owner()];
             return job;
         }
         detached_wait = true;
@@ -77,13 +116,15 @@ JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs
     return jobs.end();
 }
 
-Engine& JobScheduler::engine_for(std::uint64_t objects) { return *engines_[objects <= max_small_objects ? 1 : 0]; }
+std::shared_ptr<Engine> JobScheduler::engine_for(std::uint64_t objects) {
+    return engines_[objects <= max_small_objects ? 1 : 0]->use();
+}
 
 bool JobScheduler::run_at_once(ServerJob& job) {
     for (Instant& instant : instant_) {
         const std::unique_lock lock(instant.mutex, std::try_to_lock);
         if (!lock.owns_lock()) continue;
-        (void)job.run(*instant.engine);
+        (void)job.run(instant.engine->use());
         return true;
     }
     return false;
@@ -102,7 +143,7 @@ std::uint64_t JobScheduler::queued_before(const ServerJob& job) const {
 
 std::uint64_t JobScheduler::sum(const std::function<std::uint64_t(const Engine&)>& value) const {
     std::uint64_t sum = 0;
-    for (const auto& engine : engines_) sum += value(*engine);
+    for (const auto& engine : engines_) sum += value(*engine->use());
     return sum;
 }
 

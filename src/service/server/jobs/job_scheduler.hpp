@@ -5,32 +5,37 @@
 //   jobs share one engine with all threads.
 //   In each of the two queues, clients take turns (fair_order.hpp). The jobs of one client run in the order in which they were added. A
 //   detached job that waits for memory lets attached jobs pass, but no detached one whose turn is later.
+//   If there are several engines of small jobs, one client has at most all but one: few objects can have so many pairs that a job takes long.
+//   An engine that was idle for `idle_before_renewal` is made anew, if renewable: it keeps the memory of its largest job otherwise.
 //   An attached job of at most `max_instant_objects` objects runs on the calling thread if an instant engine is free.
 //   Waking a thread would take as long as the job.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "base/work_queue.hpp"
 #include "octopair/engine.hpp"
 #include "service/server/jobs/fair_order.hpp"
+#include "service/server/jobs/kept_engine.hpp"
 
 namespace octopair::service {
 
 class ServerJob;
 
-/// Makes an engine with `width` threads or workers.
-using EngineMaker = std::function<std::unique_ptr<Engine>(unsigned width)>;
-
 /// Up to here one thread is as fast as several, and starts sooner.
 inline constexpr std::uint64_t max_small_objects = 20000;
 inline constexpr std::uint64_t max_instant_objects = 2000;
+
+inline constexpr std::chrono::seconds idle_before_renewal(3);
 
 /// Thread safety: all functions but the destructor may be called from any thread.
 class JobScheduler {
@@ -42,6 +47,9 @@ public:
     };
     struct Makers {
         const EngineMaker &large, &small;  ///< make the engine for large jobs, and those for small and instant ones
+        bool renewable = false;            ///< making an engine is cheap: it starts no processes and talks to no ranks
+        /// Called when no large job has waited for `idle_before_renewal`, on the thread of large jobs. May be empty.
+        std::function<void()> on_idle = {};
     };
     JobScheduler(const Makers& makers, const Widths& widths);
     JobScheduler(const JobScheduler&) = delete;
@@ -50,7 +58,7 @@ public:
     ~JobScheduler();
 
     /// Returns an engine that allocates the input of a job with `objects` objects.
-    Engine& engine_for(std::uint64_t objects);
+    std::shared_ptr<Engine> engine_for(std::uint64_t objects);
     /// Requires: `job` is in state queued. It may have ended on return.
     void add(std::shared_ptr<ServerJob> job);
     /// From now on no detached job starts: those that wait are left to the next server.
@@ -65,23 +73,31 @@ public:
 
 private:
     using Queue = WorkQueue<std::shared_ptr<ServerJob>>;
+    /// A queue of jobs, and whose turn it is.
     struct Lane {
         Queue queue;
-        FairOrder order;  // used with the queue locked
+        unsigned engines = 0;
+        std::mutex mutex;  // guards the members below; locked after the queue
+        FairOrder order;
+        std::map<std::string, unsigned> running;  // number of running jobs of each client
     };
     struct Instant {
         std::mutex mutex;
-        std::unique_ptr<Engine> engine;
+        std::unique_ptr<KeptEngine> engine;
     };
     bool run_at_once(ServerJob& job);
     Lane& lane_of(std::uint64_t objects) { return objects <= max_small_objects ? small_ : large_; }
     void stop();
     void start(Lane& lane, const EngineMaker& maker, unsigned width);
-    Queue::Items::iterator next_ready(Queue::Items& jobs, FairOrder& order) const;
+    void run_next(Lane& lane, KeptEngine& engine, const std::shared_ptr<ServerJob>& job);
+    void renew_idle(Lane& lane, KeptEngine& engine);
+    Queue::Items::iterator next_ready(Queue::Items& jobs, Lane& lane) const;
 
+    const bool renewable_;
+    const std::function<void()> on_idle_;
     Lane small_, large_;
     std::atomic<bool> holds_detached_ = false;
-    std::vector<std::unique_ptr<Engine>> engines_;  // the one for large jobs first
+    std::vector<std::unique_ptr<KeptEngine>> engines_;  // the one for large jobs first
     std::vector<Instant> instant_;
     std::vector<std::jthread> threads_;
 };

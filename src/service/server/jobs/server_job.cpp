@@ -78,7 +78,7 @@ bool ServerJob::waits_for_room() {
     return !parts_.record->has_room();
 }
 
-ServerJob::Ran ServerJob::run(Engine& engine) noexcept {
+ServerJob::Ran ServerJob::run(const std::shared_ptr<Engine>& engine) noexcept {
     {
         const std::lock_guard lock(mutex_);
         if (state_ != v1::QUEUED || early_ || abandoned_) {
@@ -92,7 +92,7 @@ ServerJob::Ran ServerJob::run(Engine& engine) noexcept {
     notify_watchers();
     try {
         if (detached()) parts_.input = parts_.record->load(engine, stop_.get_token());
-        const Summary summary = find(engine, options());
+        const Summary summary = find(*engine, options());
         parts_.pairs->finish();
         end_done(summary);
     } catch (const NoRoomError& why) {

@@ -78,7 +78,7 @@ public:
     bool waits_for_room();
     enum class Ran : std::uint8_t { ended, queued_again };
     /// Runs the job on the calling thread and ends it, or puts it back into the state queued if there is no room for its result.
-    Ran run(Engine& engine) noexcept;
+    Ran run(const std::shared_ptr<Engine>& engine) noexcept;
     /// Stops the job without an ending, so that the next server runs it. Has no effect on a job that was cancelled or failed
     /// before.
     void abandon();

@@ -10,8 +10,8 @@
 
 namespace octopair::service {
 
-UploadedInput::UploadedInput(const v1::JobSpec& spec, Engine& engine, ArrayPool* array_pool)
-    : engine_(engine), array_pool_(array_pool), joined_(spec.has_second()), hash_(spec) {
+UploadedInput::UploadedInput(const v1::JobSpec& spec, std::shared_ptr<Engine> engine, ArrayPool* array_pool)
+    : engine_(std::move(engine)), array_pool_(array_pool), joined_(spec.has_second()), hash_(spec) {
     const std::array<const v1::ObjectSet*, 2> sets = {&spec.first(), &spec.second()};
     for (std::size_t i = 0; i < sets.size(); ++i) {
         arrays_[2 * i] = make_room(*sets[i], sets_[i]);
@@ -22,7 +22,7 @@ UploadedInput::UploadedInput(const v1::JobSpec& spec, Engine& engine, ArrayPool*
 
 UploadedInput::~UploadedInput() {
     if (array_pool_ == nullptr) return;
-    for (Set& set : sets_) array_pool_->give(engine_, std::move(set.boxes));
+    for (Set& set : sets_) array_pool_->give(*engine_, std::move(set.boxes));
 }
 
 std::span<std::byte> UploadedInput::make_room(const v1::ObjectSet& set, Set& made) {
@@ -34,7 +34,7 @@ std::span<std::byte> UploadedInput::make_room(const v1::ObjectSet& set, Set& mad
 template <typename Real>
 std::span<std::byte> UploadedInput::make_boxes(std::uint64_t count, Set& made) {
     auto array =
-        array_pool_ != nullptr ? array_pool_->take<Real>(engine_, count) : engine_.allocate_boxes<Box<Real>>(count);
+        array_pool_ != nullptr ? array_pool_->take<Real>(*engine_, count) : engine_->allocate_boxes<Box<Real>>(count);
     const std::span<Box<Real>> boxes = array.boxes().first(std::size_t(count));
     made.boxes = std::move(array);
     made.objects = {std::span<const Box<Real>>(boxes), made.padding};

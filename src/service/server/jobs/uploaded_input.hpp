@@ -23,7 +23,7 @@ class UploadedInput final : public InputTarget {
 public:
     /// Allocates the arrays that `spec` describes, in memory of `engine`. Box arrays come from `array_pool`, if given, and
     /// return to it at the end. Requires: `spec` was checked. Throws: Error.
-    UploadedInput(const v1::JobSpec& spec, Engine& engine, ArrayPool* array_pool = nullptr);
+    UploadedInput(const v1::JobSpec& spec, std::shared_ptr<Engine> engine, ArrayPool* array_pool = nullptr);
     UploadedInput(const UploadedInput&) = delete;
     UploadedInput& operator=(const UploadedInput&) = delete;
     ~UploadedInput() override;
@@ -47,7 +47,7 @@ private:
     template <typename Real>
     std::span<std::byte> make_boxes(std::uint64_t count, Set& made);
 
-    Engine& engine_;
+    const std::shared_ptr<Engine> engine_;
     ArrayPool* const array_pool_;
     std::array<Set, 2> sets_;
     bool joined_;

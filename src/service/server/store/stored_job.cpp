@@ -22,7 +22,8 @@ std::optional<Budget::Reservation> StoredJob::ask_memory() {
     }
 }
 
-std::unique_ptr<UploadedInput> StoredJob::load(Engine& engine, const std::stop_token& stop) const {
+std::unique_ptr<UploadedInput> StoredJob::load(const std::shared_ptr<Engine>& engine,
+                                               const std::stop_token& stop) const {
     const File file(parts_.base + ".job", File::Mode::read);
     auto input = std::make_unique<UploadedInput>(parts_.stored.spec, engine);
     Buffer<std::byte> piece(piece_bytes);

@@ -35,7 +35,8 @@ public:
 
     std::string hash() const override { return parts_.stored.hash; }
     std::optional<Budget::Reservation> ask_memory() override;
-    std::unique_ptr<UploadedInput> load(Engine& engine, const std::stop_token& stop) const override;
+    std::unique_ptr<UploadedInput> load(const std::shared_ptr<Engine>& engine,
+                                        const std::stop_token& stop) const override;
     void end(const v1::JobReport& ending) override;
     void wait_for_room(const NoRoomError& why, std::chrono::duration<double> run) override;
     bool has_room() override;
