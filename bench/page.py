@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Writes measured results into pages: the text between <!-- begin NAME --> and <!-- end NAME -->.
 
-    bench/page.py RESULTS PAGE...
+    bench/page.py [--check] RESULTS PAGE...
 
 RESULTS: the folder that bench/results fills. Text outside the marks stays unchanged. A block whose
-files are missing stays unchanged, too.
+files are missing stays unchanged, too. With --check no page is written; the exit status is 1 if a page would change.
 """
 import json
 import pathlib
@@ -337,22 +337,18 @@ def cluster(results):
     study = load(results / "cluster.json")
     runs = study["runs"] + load(results / "cluster_sizes.json")["runs"]
 
-    def computing(run):
-        return [sum(seconds for step, seconds in rank["cpu_seconds"].items() if step != "mpi") for rank in run["alone"]]
-
     def call(run):
         return run["scene"], run["objects"], run.get("arrangement", "shared")
 
-    one = {call(run): computing(run)[0] for run in runs if run["ranks"] == 1}
+    one = {call(run): run["slowest_seconds"] for run in runs if run["ranks"] == 1}
     for run in sorted(runs, key=call):
-        seconds, ranks = computing(run), run["ranks"]
-        sums = {name: sum(rank[name] for rank in run["together"]) for name in ("shared_objects", "bytes_sent")}
+        slowest, ranks = run["slowest_seconds"], run["ranks"]
         paper = ", as in the paper" if call(run)[2] == "paper" else ""
-        efficiency = f"{100 * one[call(run)] / (ranks * max(seconds)):.1f}%" if call(run) in one else "–"
-        cells = [f"{run['scene']}, {run['objects']:,}{paper}", str(ranks), milliseconds(max(seconds)),
-                 f"{max(seconds) * ranks / sum(seconds):.3f}", efficiency,
-                 f"{100 * sums['shared_objects'] / run['objects']:.2f}%", f"{sums['bytes_sent'] / run['objects']:.1f}",
-                 f"{max(rank['octants'] for rank in run['alone']):,}"]
+        efficiency = f"{100 * one[call(run)] / (ranks * slowest):.1f}%" if call(run) in one else "–"
+        cells = [f"{run['scene']}, {run['objects']:,}{paper}", str(ranks), milliseconds(slowest),
+                 f"{slowest * ranks / run['computing_seconds']:.3f}", efficiency,
+                 f"{100 * run['shared_objects'] / run['objects']:.2f}%", f"{run['bytes_sent'] / run['objects']:.1f}",
+                 f"{run['most_octants']:,}"]
         lines.append("| " + " | ".join(cells) + " |")
     return measured_on(study["machine"]) + "\n".join(lines)
 
@@ -416,12 +412,21 @@ def fill(page, results):
 
 
 def main(words):
-    if len(words) < 2:
-        sys.exit("page.py RESULTS PAGE...")
-    results, *pages = map(pathlib.Path, words)
+    check = words[:1] == ["--check"]
+    if len(words) < check + 2:
+        sys.exit("page.py [--check] RESULTS PAGE...")
+    results, *pages = map(pathlib.Path, words[check:])
+    wrong = 0
     for page in pages:
-        page.write_text(fill(page.read_text(encoding="utf-8"), results), encoding="utf-8")
+        before = page.read_text(encoding="utf-8")
+        after = fill(before, results)
+        if check and after != before:
+            print(f"{page}: a table differs from {results}: run bench/page.py {results} {page}", file=sys.stderr)
+            wrong = 1
+        elif after != before:
+            page.write_text(after, encoding="utf-8")
+    return wrong
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

@@ -3,7 +3,7 @@
 
     bench/plot.py FOLDER [--paper FILE] [--peers FILE...] [--scaling FILE...] [--cluster FILE]
 
-Each FILE is the JSON of a program. The pictures are written to FOLDER:
+Each FILE is the JSON of a program, reduced by bench/reduce_results.py. The pictures are written to FOLDER:
 
     --paper    octopair-bench paper      figure-5.svg, components.svg
     --peers    octopair_compare          peers-1m.svg, for a million objects on one thread
@@ -249,11 +249,6 @@ RANK_STEPS = {"join": BLACK, "plan": GREEN, "route": PURPLE, "pack": YELLOW, "bu
               "order": BLUE}
 
 
-def rank_seconds(costs):
-    """Returns the processor seconds of a rank's computing."""
-    return sum(seconds for step, seconds in costs["cpu_seconds"].items() if step in RANK_STEPS)
-
-
 def calls_of(cluster):
     """Returns the runs by call and number of ranks, for calls that were also measured on one rank."""
     calls = {}
@@ -270,9 +265,9 @@ def cluster_efficiency(cluster, folder):
     figure, axes = pyplot.subplots(figsize=(9, 3.8), layout="constrained")
     calls = calls_of(cluster)
     for i, (name, runs) in enumerate(calls.items()):
-        one = rank_seconds(runs[1]["alone"][0])
+        one = runs[1]["slowest_seconds"]
         ranks = sorted(runs)
-        shares = [100 * one / (k * max(map(rank_seconds, runs[k]["alone"]))) for k in ranks]
+        shares = [100 * one / (k * runs[k]["slowest_seconds"]) for k in ranks]
         axes.plot(ranks, shares, "o-" if i < len(LINES) else "s--", color=LINES[i % len(LINES)], markersize=4, label=name)
     core_axis(axes, {k for runs in calls.values() for k in runs}, "ranks")
     axes.set_ylim(bottom=0)
@@ -286,11 +281,11 @@ def draw_steps(axes, runs):
     ranks = sorted(runs)
     bottom = [0.0] * len(ranks)
     for step, color in RANK_STEPS.items():
-        sums = [1e3 * sum(costs["cpu_seconds"].get(step, 0) for costs in runs[k]["alone"]) for k in ranks]
+        sums = [1e3 * runs[k]["cpu_seconds"].get(step, 0) for k in ranks]
         if any(sums):
             axes.bar(range(len(ranks)), sums, 0.7, bottom=bottom, color=color, label=step)
         bottom = [a + b for a, b in zip(bottom, sums)]
-    slowest = [1e3 * k * max(map(rank_seconds, runs[k]["alone"])) for k in ranks]
+    slowest = [1e3 * k * runs[k]["slowest_seconds"] for k in ranks]
     axes.bar(range(len(ranks)), [a - b for a, b in zip(slowest, bottom)], 0.7, bottom=bottom, color="#dddddd",
              label="behind the slowest")
     axes.set_xticks(range(len(ranks)), ranks)

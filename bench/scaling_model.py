@@ -48,7 +48,7 @@ def octant_bounds(runs):
 
 def mean_seconds(run, steps):
     """Returns the mean seconds of the ranks in `steps`."""
-    return sum(rank["cpu_seconds"][step] for rank in run["alone"] for step in steps) / run["ranks"]
+    return sum(run["cpu_seconds"][step] for step in sorted(steps)) / run["ranks"]
 
 
 def planning(run):
@@ -57,15 +57,15 @@ def planning(run):
 
 def computing(run):
     """Returns the mean seconds of all steps except planning."""
-    return mean_seconds(run, set(run["alone"][0]["cpu_seconds"]) - {"plan", "mpi"})
+    return mean_seconds(run, set(run["cpu_seconds"]) - {"plan", "mpi"})
 
 
 def stored_octants(run):
-    return sum(rank["octants"] for rank in run["alone"]) / run["ranks"]
+    return run["octants"] / run["ranks"]
 
 
 def per_rank(run, name):
-    return sum(rank[name] for rank in run["together"]) / run["ranks"]
+    return run[name] / run["ranks"]
 
 
 def fit(rows, values):
