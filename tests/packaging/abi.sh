@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Checks that programs which were linked with an earlier release run with the shared libraries of these packages.
 #
-#     abi.sh PACKAGES             compares the interfaces of the libraries in PACKAGES/*.deb with abi/*.abi
-#     abi.sh --update PACKAGES    writes abi/*.abi; only for a release, or with a new SONAME
+#     abi.sh PACKAGES             compares the interfaces of the libraries in PACKAGES/*.deb with abi/*.abi.xz
+#     abi.sh --update PACKAGES    writes abi/*.abi.xz; only for a release, or with a new SONAME
 #
 # An interface may grow. A function that is missing, and a type with another layout, are errors. The descriptions are those of
-# abidw, which reads debug information (PACKAGES/debug).
+# abidw, which reads debug information (PACKAGES/debug). They are compressed; `xzless abi/octopair.abi.xz` shows one.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 soversion=$(sed -n 's/^set(OCTOPAIR_SOVERSION \([0-9]*\))/\1/p' "$here/../../CMakeLists.txt")
@@ -36,10 +36,15 @@ for name in octopair octopair_c octopair_client octopair_mpi octopair_pipeline o
     describe "$library" "$work/$name.abi"
     grep -q "<function-decl" "$work/$name.abi" || { echo "lib$name: no debug information" && exit 1; }
     if [ -n "$update" ]; then
-        cp "$work/$name.abi" "$here/abi/$name.abi"
-    elif [ ! -f "$here/abi/$name.abi" ]; then
+        # One thread: equal descriptions give equal bytes on each machine.
+        xz -9 --threads=1 --stdout "$work/$name.abi" > "$here/abi/$name.abi.xz"
+        continue
+    elif [ ! -f "$here/abi/$name.abi.xz" ]; then
         echo "lib$name: new since the last release"
-    elif ! fits "$here/abi/$name.abi" "$work/$name.abi"; then
+        continue
+    fi
+    xz --decompress --stdout "$here/abi/$name.abi.xz" > "$work/$name.released.abi"
+    if ! fits "$work/$name.released.abi" "$work/$name.abi"; then
         echo "lib$name: programs of an earlier release may fail with this library"
         cat "$work/report"
         bad=1
