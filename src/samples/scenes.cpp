@@ -109,8 +109,6 @@ std::vector<std::string_view> scene_kinds() {
 
 std::string_view scene_description(std::string_view kind) { return find_kind(kind).description; }
 
-bool scene_moves(std::string_view kind) { return find_kind(kind).moves; }
-
 void generate_scene(const SceneSpec& spec, const SceneSink& sink) {
     const Kind& kind = find_kind(spec.kind);
     check(spec, kind);

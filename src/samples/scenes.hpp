@@ -32,8 +32,6 @@ using SceneSink = std::function<void(std::span<const Box3f>)>;
 std::vector<std::string_view> scene_kinds();
 /// Returns a description of `kind`: one line without a full stop. Throws: Error{usage} for an unknown kind.
 std::string_view scene_description(std::string_view kind);
-/// Returns true if a scene of `kind` may have several frames. Throws: Error{usage} for an unknown kind.
-bool scene_moves(std::string_view kind);
 
 /// Passes the boxes to `sink` in batches, frame after frame. A batch has boxes of one frame and is not empty.
 /// Throws: Error{usage} for an unknown kind or a number out of range, before the first batch.

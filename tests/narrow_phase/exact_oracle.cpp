@@ -90,6 +90,13 @@ bool is_within(const Place& place, const std::vector<HalfSpace>& halves) {
     return std::all_of(halves.begin(), halves.end(), [&](const HalfSpace& half) { return half.height(place) >= 0; });
 }
 
+std::vector<Point3d> shared_corners(const Triangle3d& a, const Triangle3d& b) {
+    const std::set<Point3d> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
+    std::vector<Point3d> shared;
+    std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(shared));
+    return shared;
+}
+
 }  // namespace
 
 int oracle_plane_side(const std::array<Point3d, 4>& corners) {
@@ -99,11 +106,13 @@ int oracle_plane_side(const std::array<Point3d, 4>& corners) {
 
 bool oracle_meet(const Triangle3d& a, const Triangle3d& b) { return !common_corners(a, b).empty(); }
 
+unsigned oracle_shared_corners(const Triangle3d& a, const Triangle3d& b) {
+    return unsigned(shared_corners(a, b).size());
+}
+
 bool oracle_meet_beyond(const Triangle3d& a, const Triangle3d& b) {
     const Convex common = common_corners(a, b);
-    const std::set<Point3d> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
-    std::vector<Point3d> shared;
-    std::set_intersection(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), std::back_inserter(shared));
+    const std::vector<Point3d> shared = shared_corners(a, b);
     if (shared.empty()) return !common.empty();
     if (shared.size() == 3) return !is_zero(cross(exactly(a[1]) - exactly(a[0]), exactly(a[2]) - exactly(a[0])));
     const auto halves = halves_of(exactly(shared.front()), exactly(shared.back()));

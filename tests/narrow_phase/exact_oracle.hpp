@@ -18,6 +18,8 @@ int oracle_plane_side(const std::array<Point3d, 4>& corners);
 /// Returns whether two triangles intersect. Clips one triangle by the half spaces and planes whose intersection is the
 /// other triangle.
 bool oracle_meet(const Triangle3d& a, const Triangle3d& b);
+/// Returns the number of places that are a corner of both triangles: 0 to 3.
+unsigned oracle_shared_corners(const Triangle3d& a, const Triangle3d& b);
 /// Returns whether the triangles intersect outside of the shared corner, edge or edges.
 bool oracle_meet_beyond(const Triangle3d& a, const Triangle3d& b);
 /// The intersection of two triangles.

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
+#include "narrow_phase/mesh/mesh_walk.hpp"
 #include "samples/meshes.hpp"
 #include "samples/random.hpp"
 
@@ -112,6 +115,49 @@ TEST(MeshPair, MeetsWhereSomeTrianglesMeet) {
     }
     EXPECT_GT(meeting, 10u);
     EXPECT_LT(meeting, 50u);
+}
+
+/// Returns the pairs of leaves in the order of a traversal that tests two boxes with Separation::apart().
+std::vector<NodePair> leaves_within(MeshWalk walk) {
+    std::vector<NodePair> leaves;
+    while (!walk.waiting.empty()) {
+        const NodePair at = walk.waiting.pop();
+        const MeshNode &a = walk.nodes_a[at.a], &b = walk.nodes_b[at.b];
+        if (a.is_leaf() && b.is_leaf()) {
+            leaves.push_back(at);
+            continue;
+        }
+        const auto children = children_of(at, a, b, walk.separation);
+        for (const NodePair& child : {children[1], children[0]}) {
+            walk.waiting.push_if(child,
+                                 !walk.separation.apart(walk.nodes_a[child.a], walk.nodes_b[child.b], walk.reach));
+        }
+    }
+    return leaves;
+}
+
+TEST(MeshWalk, FindsTheLeavesThatSeparationFinds) {
+    Couple couple(torus_mesh({20, 12, 0.3, 1}), sphere_mesh(0.8, 2));
+    RandomStream random(11, 0);
+    std::size_t all = 0;
+    for (int round = 0; round < 60; ++round) {
+        couple.pose_a = random_pose(random, 2);
+        couple.pose_b = random_pose(random, 2);
+        if (round % 3 == 1) scale(couple.pose_b, {1, 0, 1});  // cannot be inverted: compared along the world's axes
+        const float reach = float(round % 4) * 0.1F;
+        MeshWalk walk(couple.a(), couple.b(), reach);
+        std::vector<NodePair> found;
+        std::array<NodePair, 7> some;
+        for (unsigned count = 7; count == 7;) {
+            count = next_leaves(walk, some);
+            found.insert(found.end(), some.begin(), some.begin() + count);
+        }
+        const auto numbers = [](const NodePair& leaf) { return std::pair(leaf.a, leaf.b); };
+        EXPECT_TRUE(std::ranges::equal(found, leaves_within({couple.a(), couple.b(), reach}), {}, numbers, numbers))
+            << round;
+        all += found.size();
+    }
+    EXPECT_GT(all, 10'000u);
 }
 
 TEST(MeshPair, GapIsTheLeastOfAllTriangles) {

@@ -26,13 +26,12 @@ public:
     void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
 
     /// Returns space for `bytes` characters in the buffer. The caller fills a prefix of it and passes its length to advance().
-    /// Requires: bytes <= max_room.
+    /// Requires: bytes <= 4096.
     char* room(std::size_t bytes) {
         if (buffer_.size() - used_ < bytes) flush();
         return buffer_.data() + used_;
     }
     void advance(std::size_t bytes) { used_ += bytes; }
-    static constexpr std::size_t max_room = 4096;
 
     void flush();
     /// Flushes the buffer, and makes the result final.

@@ -232,10 +232,6 @@ bool triangles_meet(const Triangle3d& a, const Triangle3d& b) {
     return PlaneCrossing(a, a_sides, b, b_sides).meet();
 }
 
-unsigned shared_corners(const Triangle3d& a, const Triangle3d& b) {
-    return equal_corners(a, b) == 0 ? 0 : DistinctCorners(a, b).shared;
-}
-
 bool meet_beyond_shared(const Triangle3d& a, const Triangle3d& b) {
     const unsigned equal = equal_corners(a, b);
     if (equal == 0) return triangles_meet(a, b);

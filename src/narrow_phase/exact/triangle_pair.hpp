@@ -12,9 +12,6 @@ namespace octopair {
 /// Returns true if the triangles have a point in common.
 bool triangles_meet(const Triangle3d& a, const Triangle3d& b);
 
-/// Returns the number of places that are a corner of both triangles: 0 to 3. Triangles that share a corner are adjacent.
-unsigned shared_corners(const Triangle3d& a, const Triangle3d& b);
-
 /// Returns true if the triangles have a point in common outside their shared feature: one corner, the segment between two
 /// corners, or the edges between three. So equal triangles meet beyond it unless they are degenerate.
 bool meet_beyond_shared(const Triangle3d& a, const Triangle3d& b);

@@ -62,7 +62,5 @@ struct MeshWalk {
 /// Writes the next pairs of leaves within reach to `leaves` and returns their number. The number is below `leaves.size()` only
 /// at the end of the traversal. The order depends only on the trees and poses.
 unsigned next_leaves(MeshWalk& walk, std::span<NodePair> leaves);
-/// Scalar version of next_leaves(), which calls Separation: the specification.
-unsigned next_leaves_scalar(MeshWalk& walk, std::span<NodePair> leaves);
 
 }  // namespace octopair

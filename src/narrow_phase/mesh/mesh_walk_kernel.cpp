@@ -1,4 +1,5 @@
-// next_leaves(): the SIMD version of Separation's comparisons, compiled for each instruction set by Highway.
+// next_leaves(): the SIMD version of Separation's comparisons, compiled for each instruction set by Highway. Separation::apart() is
+// the specification.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "narrow_phase/mesh/mesh_walk_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -31,7 +32,8 @@ unsigned walk_with(const Test& test, MeshWalk& walk, std::span<NodePair> leaves)
     return found;
 }
 
-/// The specification of the other tests.
+#if HWY_TARGET == HWY_SCALAR
+
 struct ScalarTest {
     explicit ScalarTest(const MeshWalk& walk) : separation(walk.separation), reach(walk.reach) {}
     bool apart(const MeshNode& a, const MeshNode& b) const { return separation.apart(a, b, reach); }
@@ -40,13 +42,9 @@ struct ScalarTest {
     float reach;
 };
 
-unsigned next_leaves_by_scalars(MeshWalk& walk, std::span<NodePair> leaves) {
+unsigned next_leaves_simd(MeshWalk& walk, std::span<NodePair> leaves) {
     return walk_with(ScalarTest(walk), walk, leaves);
 }
-
-#if HWY_TARGET == HWY_SCALAR
-
-unsigned next_leaves_simd(MeshWalk& walk, std::span<NodePair> leaves) { return next_leaves_by_scalars(walk, leaves); }
 
 #else
 
@@ -136,10 +134,6 @@ HWY_EXPORT(next_leaves_simd);
 
 unsigned next_leaves(MeshWalk& walk, std::span<NodePair> leaves) {
     return HWY_DYNAMIC_DISPATCH(next_leaves_simd)(walk, leaves);
-}
-
-unsigned next_leaves_scalar(MeshWalk& walk, std::span<NodePair> leaves) {
-    return HWY_STATIC_DISPATCH(next_leaves_by_scalars)(walk, leaves);
 }
 
 }  // namespace octopair

@@ -18,11 +18,11 @@ namespace octopair {
 
 class CellSet {
 public:
-    static constexpr std::size_t padding = 96;           ///< number of columns that may be read behind the end
-    static constexpr std::size_t max_entries = 1 << 16;  ///< a CellHit has 16 bits for a position
+    static constexpr std::size_t padding = 96;  ///< number of columns that may be read behind the end
 
     using Runs = std::span<const std::span<const CellEntry>>;
-    /// Sorts the entries of all runs. Prefetches the runs `next` while it reads. Requires: at most max_entries.
+    /// Sorts the entries of all runs. Prefetches the runs `next` while it reads.
+    /// Requires: at most 2^16 entries (tuning().scan.max_swept_list), because a CellHit has 16 bits for a position.
     void assign(Runs runs, Runs next = {});
 
     /// Sorts the entries along the next axis, which becomes the first.

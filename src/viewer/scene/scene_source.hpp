@@ -34,8 +34,6 @@ public:
     std::uint64_t counted() const;
     std::uint64_t frames() const { return finder_.frames(); }
     bool moving() const { return contents_.moving; }
-    /// Returns the number of pairs of the first frame. Requires: load().
-    std::uint64_t first_pairs() const { return first_pairs_; }
     /// Returns all addresses of one frame, or of the whole scene, for an exported page.
     std::vector<std::string> addresses() const;
     std::vector<std::string> addresses_of(std::uint64_t frame);
@@ -64,7 +62,6 @@ private:
     using FramePointer = std::shared_ptr<Frame>;
 
     std::optional<Answer> get_scene(std::string_view what, const Address& address);
-    std::optional<Answer> get_of_frame(std::string_view what, std::string_view number, const Address& address);
     std::optional<Answer> answer_about(Frame& frame, std::string_view what, const Address& address);
     std::optional<Answer> octant_answer(Frame& frame, std::string_view level);
     Answer view_answer() const;
