@@ -28,10 +28,10 @@ SKIPPED = {"node_modules", "__pycache__", EXCEPTIONS}
 PUBLIC = ["include/octopair/", "c/include/", "adapters/", "python/octopair/", "packaging/conan/", "docs/site/conf.py"]
 
 KINDS = "--kinds-C++=dfmepvx --kinds-Python=fmv --kinds-JavaScript=fmvC --kinds-TypeScript=fmvCp".split()
-# What is no code: comments of C++ and TypeScript; raw, other and character literals of C++.
+# What is no code: comments; raw, other and character literals of C++; documentation of Python, but not its formatted strings.
 C_IGNORED = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)\'(?:\\.|[^\'\\\n])+\'', re.DOTALL)
 SCRIPT_IGNORED = re.compile(r"(?<!:)//[^\n]*|/\*.*?\*/", re.DOTALL)
-PYTHON_IGNORED = re.compile(r'(?<![frFR])"""(?:.*?)"""|(?m:(?:^|\s)#[^\n"\']*$)', re.DOTALL)
+PYTHON_IGNORED = re.compile(r'\b[fF][rR]?"""(?P<kept>.*?)"""|""".*?"""|(?m:(?:^|\s)#[^\n"\']*$)', re.DOTALL)
 NAME = re.compile(r"\b[A-Za-z_]\w*")
 OVERRIDES = re.compile(r"[^;{]*\b(?:override|final)\b")
 
@@ -53,7 +53,7 @@ def code_of(path):
         ignored = SCRIPT_IGNORED
     else:
         ignored = PYTHON_IGNORED
-    return ignored.sub(lambda match: "\n" * match[0].count("\n") or " ", text)
+    return ignored.sub(lambda match: match.groupdict().get("kept") or "\n" * match[0].count("\n") or " ", text)
 
 
 def occurrences(texts):
