@@ -180,11 +180,14 @@ TEST_F(ServedFairness, IdleEnginesAreMadeAnew) {
     EXPECT_EQ(made, 3);
     const auto engine = connect(served.address());
     PairList pairs;
-    for (const std::size_t objects : {30'000u, 5'000u, 100u})
-        engine->find_pairs(make_boxes("dense", objects, 1), pairs);
+    std::vector<Box3f> boxes;
+    for (const std::size_t objects : {30'000u, 5'000u, 100u}) {
+        boxes = make_boxes("dense", objects, 1);
+        engine->find_pairs(Objects{boxes}, pairs);
+    }
     ASSERT_TRUE(comes_true([&] { return made >= 6; }, std::chrono::minutes(1)));
     const auto before = pairs.size();
-    engine->find_pairs(make_boxes("dense", 100, 1), pairs);
+    engine->find_pairs(Objects{boxes}, pairs);
     EXPECT_EQ(pairs.size(), before);
 }
 
