@@ -117,6 +117,13 @@ TEST(NpyHeader, RefusesWhatIsNotExactlyTheDict) {
     EXPECT_NE(header_refusal(file_of("{'descr': '<f4', 'fortran_order': False, 'shape': (18)}", 72)), "");
 }
 
+TEST(NpyHeader, RefusesMoreThan64KiB) {
+    EXPECT_EQ(parsed_header(file_of(boxes_dict + std::string(65'000, ' '), 72, 2)).shape.size(), 2u);
+    std::string file = file_of(boxes_dict + std::string(66'000, ' '), 72, 2);
+    file[10] = '\1';  // file_of() writes the lower 16 bits of the length
+    EXPECT_NE(header_refusal(file).find("which is too long"), std::string::npos);
+}
+
 TEST(NpyHeader, RefusesEveryPrefix) {
     for (const char version : {'\1', '\2', '\3'}) {
         const std::string whole = file_of(boxes_dict, 72, version);

@@ -2,6 +2,7 @@
 // and a forked process cannot use its parent's engine.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,9 +11,13 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "processes/leftovers.hpp"
 #include "samples/random.hpp"
@@ -93,6 +98,53 @@ TEST_F(WorkerLifetimes, AForkedProcessLeavesTheWorkersAlone) {
     engine->find_pairs({boxes}, list);
     EXPECT_EQ(list.to_vector(), expected(boxes));
     EXPECT_EQ(worker_faults(*engine).ended, 0u);
+}
+
+/// Returns the descriptors of a process, and the file or socket of each.
+std::vector<std::pair<int, std::string>> open_files(pid_t process) {
+    std::vector<std::pair<int, std::string>> open;
+    const std::filesystem::path folder = "/proc/" + std::to_string(process) + "/fd";
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        std::error_code closed;  // the descriptor that lists the folder is closed afterwards
+        const std::string file = std::filesystem::read_symlink(entry.path(), closed).string();
+        if (!closed) open.emplace_back(std::stoi(entry.path().filename()), file);
+    }
+    return open;
+}
+
+TEST_F(WorkerLifetimes, InheritNoOpenFile) {
+    const Descriptor inheritable(::memfd_create("of the application", 0));  // without MFD_CLOEXEC
+    ASSERT_GE(inheritable.number(), 0);
+    const auto engine = make_process_engine(2);
+    const auto boxes = samples::make_scene("uniform", 20'000, 1);
+    PairList list;
+    engine->find_pairs({boxes}, list);
+    const std::vector<pid_t> workers = test::children_of(::getpid());
+    ASSERT_EQ(workers.size(), 2u);
+    for (const pid_t worker : workers) {
+        std::size_t sockets = 0;
+        for (const auto& [number, file] : open_files(worker)) {
+            EXPECT_EQ(file.find("of the application"), std::string::npos) << file;
+            sockets += file.starts_with("socket:") && number > 2 ? 1 : 0;
+        }
+        EXPECT_EQ(sockets, 1u);
+    }
+}
+
+TEST_F(WorkerLifetimes, SharedFilesHaveNoNameAndCannotBeCut) {
+    const auto engine = make_process_engine(2);
+    PairList list;
+    const auto boxes = samples::make_scene("dense", 20'000, 1);
+    engine->find_pairs({boxes}, list);
+    std::size_t shared = 0;
+    for (const auto& [number, file] : open_files(::getpid())) {
+        if (!file.starts_with("/memfd:octopair")) continue;
+        ++shared;
+        EXPECT_NE(::fcntl(number, F_GET_SEALS) & F_SEAL_SHRINK, 0) << file;
+        EXPECT_NE(::ftruncate(number, 0), 0) << file;
+    }
+    EXPECT_GE(shared, 2u);
+    EXPECT_TRUE(test::Belongings::now().named_memory.empty());
 }
 
 /// Starts the test application (application.cpp), which starts workers.

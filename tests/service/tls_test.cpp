@@ -58,6 +58,17 @@ TEST_F(Tls, ClientsDoNotTrustEverybody) {
     EXPECT_NE(failure_of(stranger.address().text(), trusting()).find("certificate verify failed"), std::string::npos);
 }
 
+TEST_F(Tls, AnExpiredCertificateOfTheServerIsAWarning) {
+    for (const auto& [name, warns] : {std::pair("expired-server", true), std::pair("server", false)}) {
+        std::ostringstream words;
+        const service::Server server(
+            secured(name),
+            service::make_log(service::LogForm::text, std::make_shared<spdlog::sinks::ostream_sink_mt>(words)));
+        EXPECT_EQ(words.str().find(files().pem(name) + ": the certificate has expired") != std::string::npos, warns)
+            << words.str();
+    }
+}
+
 TEST_F(Tls, ClientsShowTheirCertificates) {
     const service::Server server(secured("server", true), silent());
     const std::string address = server.address().text();

@@ -89,6 +89,9 @@ class Answers(InFolder):
             status, headers, body = view.request('/')
             self.assertEqual((status, headers['content-type']), (200, 'text/html; charset=utf-8'))
             self.assertIn(b'octopair', body)
+            policy = re.search(rb'http-equiv="Content-Security-Policy" content="([^"]*)"', body)[1]
+            self.assertTrue(policy.startswith(b"default-src 'none'; "), policy)
+            self.assertNotRegex(policy, rb'https?:|\*|unsafe-eval')
             self.assertEqual(headers['x-frame-options'], 'DENY')
             self.assertEqual(headers['x-content-type-options'], 'nosniff')
             self.assertEqual(headers['cache-control'], 'no-store')

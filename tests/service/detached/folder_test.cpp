@@ -20,6 +20,21 @@ TEST(Folder, IsItsOwnersAndOneServers) {
     EXPECT_NE(words.find("another server"), std::string::npos) << words;
 }
 
+TEST(Folder, HasFilesForItsOwnerAlone) {
+    const DetachedServer server;
+    const auto client = server.client();
+    const std::vector<Box3f> boxes(3);
+    (void)client->wait(client->submit({std::span(boxes), {}}), std::chrono::minutes(1));
+    std::size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(server.state())) {
+        struct stat status {};
+        ASSERT_EQ(::stat(entry.path().c_str(), &status), 0);
+        EXPECT_EQ(status.st_mode & 0777, 0600u) << entry.path();
+        ++files;
+    }
+    EXPECT_EQ(files, 4u) << "a job, its result, the lock and the version";
+}
+
 TEST(Folder, OtherKindsOfFilesDoNotStopTheServer) {
     DetachedServer server;
     server.stop();
