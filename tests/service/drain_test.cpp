@@ -81,6 +81,38 @@ TEST_F(Drain, LetsResultsReachTheirClients) {
     EXPECT_EQ(received, boxes * (boxes - 1) / 2);
 }
 
+/// Returns the answer of gRPC's health service: 1 is SERVING and 2 is NOT_SERVING. Returns 0 if the call fails.
+int health(const std::shared_ptr<grpc::Channel>& channel) {
+    grpc::ByteBuffer answer;
+    grpc::Slice bytes;
+    if (!call_raw(channel, "/grpc.health.v1.Health/Check", "", answer).ok()) return 0;
+    if (!answer.DumpToSingleSlice(&bytes).ok() || bytes.size() != 2) return 0;
+    return bytes.begin()[1];  // the message has one field
+}
+
+TEST_F(Drain, IsToldByTheHealthServiceWhileJobsEnd) {
+    service::Server server(patient(), silent());
+    const auto channel = grpc::CreateChannel(address(), grpc::InsecureChannelCredentials());
+    EXPECT_EQ(health(channel), 1);
+    std::promise<void> arrived, go_on;
+    std::jthread client([&] {
+        const std::vector<Box3f> same(3000, Box3f{{0, 0, 0}, {1, 1, 1}});
+        bool first = true;
+        (void)connect(address(), {})->stream_pairs({same}, [&](std::span<const Pair>) {
+            if (!std::exchange(first, false)) return;
+            arrived.set_value();
+            go_on.get_future().wait();
+        });
+    });
+    arrived.get_future().wait();
+    const auto ended = std::async(std::launch::async, [&] { server.drain(); });
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    int last = 1;
+    while (last == 1 && std::chrono::steady_clock::now() < end) last = health(channel);
+    go_on.set_value();
+    EXPECT_EQ(last, 2);
+}
+
 TEST_F(Drain, CancelsWhatIsLeftAfterItsGrace) {
     service::ServerOptions options = patient();
     options.grace = std::chrono::seconds(1);
