@@ -52,6 +52,9 @@ public:
 
     /// Returns a bound: all integers have magnitudes below 2^bits.
     unsigned bits() const { return bits_; }
+    /// Returns the exponent of the unit: each number is an integer times 2^unit.
+    int unit() const { return begin_; }
+    const Dyadic& number(std::size_t i) const { return numbers_[i]; }
 
     /// Returns number `i` as an integer. Requires: Integer has more than bits() bits.
     template <typename Integer>

@@ -7,66 +7,15 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/dyadic_grid.hpp"
+#include "geometry/word_integer.hpp"
 
 namespace octopair {
 namespace {
-
-__extension__ using DoubleWord = unsigned __int128;
 
 struct Difference {
     Dyadic high{0}, low{0};
 };
 using Differences = std::array<Difference, 3>;
-
-/// An integer modulo 2^(64 * words), least word first.
-template <std::size_t words>
-class WordInteger {
-public:
-    WordInteger() = default;
-    /// Makes `number` in multiples of 2^unit. Requires: unit <= number.exponent.
-    WordInteger(const Dyadic& number, int unit) {
-        if (number.mantissa == 0) return;
-        const auto shift = unsigned(number.exponent - unit);
-        std::size_t word = shift / 64;
-        const unsigned bits = shift % 64;
-        const auto sign = std::uint64_t(number.mantissa >> 63);
-        words_[word] = std::uint64_t(number.mantissa) << bits;
-        if (++word < words) words_[word] = bits == 0 ? sign : std::uint64_t(number.mantissa >> (64 - bits));
-        while (++word < words) words_[word] = sign;
-    }
-
-    void subtract(const WordInteger& other) {
-        bool borrow = false;
-        for (std::size_t i = 0; i < words; ++i) {
-            const std::uint64_t before = words_[i], less = other.words_[i];
-            words_[i] = before - less - (borrow ? 1 : 0);
-            borrow = before < less || (borrow && before == less);
-        }
-    }
-
-    void add_square(const WordInteger& root) {
-        for (std::size_t i = 0; i < words; ++i) {
-            if (root.words_[i] == 0) continue;
-            std::uint64_t carry = 0;
-            for (std::size_t j = 0; i + j < words; ++j) {
-                const DoubleWord sum = DoubleWord(root.words_[i]) * root.words_[j] + words_[i + j] + carry;
-                words_[i + j] = std::uint64_t(sum);
-                carry = std::uint64_t(sum >> 64);
-            }
-        }
-    }
-
-    int compare(const WordInteger& other) const {
-        for (std::size_t i = words; i-- > 0;) {
-            if (words_[i] != other.words_[i]) return words_[i] < other.words_[i] ? -1 : 1;
-        }
-        return 0;
-    }
-
-private:
-    std::array<std::uint64_t, words> words_{};
-};
 
 template <std::size_t words>
 WordInteger<words> square_sum(const Differences& differences, int unit) {
@@ -75,7 +24,7 @@ WordInteger<words> square_sum(const Differences& differences, int unit) {
         if (high.mantissa == 0 && low.mantissa == 0) continue;
         WordInteger<words> gap(high, unit);
         gap.subtract(WordInteger<words>(low, unit));
-        sum.add_square(gap);
+        sum.add_product(gap, gap);
     }
     return sum;
 }

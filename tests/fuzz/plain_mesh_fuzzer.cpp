@@ -2,10 +2,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 #include <stop_token>
 #include <string_view>
 #include <vector>
 
+#include "io/edge_balance.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
 #include "octopair/error.hpp"
 
@@ -17,9 +19,17 @@ void require(bool holds) {
 
 void check(const octopair::io::PlainMesh& mesh, std::size_t size) {
     require(mesh.corners.size() <= size && mesh.vertices.size() <= size && mesh.ends.size() <= size);
-    const std::uint64_t triangles = mesh.triangles();
-    const octopair::shape::Mesh cut = octopair::io::cut_into_triangles(mesh);
-    require(cut.triangles.size() == triangles);
+    octopair::io::CrossingFaces crossing;
+    const octopair::shape::Mesh cut = octopair::io::cut_into_triangles(mesh, crossing, {});
+    octopair::test::EdgeBalance edges;
+    const auto place_of = [&](std::uint32_t corner) { return mesh.vertices[corner]; };
+    std::uint64_t begin = 0;
+    for (const std::uint64_t end : mesh.ends) {
+        if (end - begin > 2) edges.add(std::span(mesh.corners).subspan(begin, end - begin), place_of, -1);
+        begin = end;
+    }
+    for (const auto& triangle : cut.triangles) edges.add(triangle, place_of, 1);
+    require(edges.is_zero());
     for (const auto& triangle : cut.triangles) {
         for (const std::uint32_t corner : triangle) {
             require(corner < cut.vertices.size());

@@ -247,6 +247,7 @@ TEST(PlainMesh, FacesAreCutWithinTheirOutline) {
           {1, 3, 0},
           {0, 3, 0}},
          11}};
+    io::CrossingFaces crossing;
     for (const auto& [outline, area] : faces) {
         for (const bool turned : {false, true}) {
             for (std::size_t first = 0; first < outline.size(); ++first) {
@@ -257,7 +258,7 @@ TEST(PlainMesh, FacesAreCutWithinTheirOutline) {
                     mesh.corners.push_back(std::uint32_t(turned ? outline.size() - 1 - at : at));
                 }
                 mesh.end_face();
-                const shape::Mesh cut = io::cut_into_triangles(mesh);
+                const shape::Mesh cut = io::cut_into_triangles(mesh, crossing, never);
                 EXPECT_EQ(cut.triangles.size(), outline.size() - 2);
                 EXPECT_NEAR(area_of(cut), turned ? -area : area, 1e-12);
                 for (const auto& triangle : cut.triangles) {
@@ -274,8 +275,35 @@ TEST(PlainMesh, FacesAreCutWithinTheirOutline) {
         mesh.vertices = odd;
         for (std::size_t i = 0; i < odd.size(); ++i) mesh.corners.push_back(std::uint32_t(i));
         mesh.end_face();
-        EXPECT_EQ(io::cut_into_triangles(mesh).triangles.size(), odd.size() - 2);
+        EXPECT_EQ(io::cut_into_triangles(mesh, crossing, never).triangles.size(), odd.size() - 2);
     }
+}
+
+TEST(PlainMesh, CrossingFacesAreTold) {
+    const TemporaryDirectory directory;
+    const std::string vertices = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n";
+    const std::string path = directory.file("faces.obj");
+    const auto warnings = [&](const std::string& faces, io::MeshObjects objects) {
+        write_file(path, vertices + faces);
+        return io::read_scene(path, {objects, true}).warnings;
+    };
+    const std::vector<std::string> one = {
+        path +
+        ": 1 face crosses itself or folds (the first: face 1 of 'faces.obj/part'); its triangles may be wrong, "
+        "so divide it in the file"};
+    for (const io::MeshObjects objects : {io::MeshObjects::node, io::MeshObjects::triangle}) {
+        EXPECT_EQ(warnings("o part\nf 1 3 2 4\nf 1 2 3\nf 1 3 1 2 4\n", objects), std::vector<std::string>{});
+        EXPECT_EQ(warnings("o part\nf 1 3 2 4\nf 1 2 3 4\n", objects), one);
+        const std::vector<std::string> several = warnings("f 1 2 3 4\nf 4 3 2 1\n", objects);
+        ASSERT_EQ(several.size(), 1u);
+        EXPECT_EQ(several[0],
+                  path +
+                      ": 2 faces cross themselves or fold (the first: face 0 of 'faces.obj'); their triangles "
+                      "may be wrong, so divide them in the file");
+    }
+    write_file(directory.file("scene.json"), R"({"shapes": {"mesh": {"type": "mesh", "file": "faces.obj"}},
+        "objects": [{"name": "a", "shape": "mesh"}]})");
+    EXPECT_EQ(io::read_scene(directory.file("scene.json"), {io::MeshObjects::node, true}).warnings.size(), 1u);
 }
 
 TEST(PlainMesh, ScenesHaveTheBoxesOfUsedVertices) {

@@ -167,12 +167,14 @@ private:
     std::uint64_t last_parent_ = 0;
 };
 
-/// Reads a mesh file. Sets `largest_rounded` to that of the file (LoadedScene), if that is larger.
-shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] double& largest_rounded) {
+/// Reads a mesh file. Adds the file's LoadedScene::largest_rounded and warnings to `scene`.
+shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& scene,
+                      [[maybe_unused]] const std::stop_token& stop) {
 #ifdef OCTOPAIR_WITH_MESHES
-    if (is_plain_ending(ending_of(path))) return read_plain_mesh(path, largest_rounded, {});
+    if (is_plain_ending(ending_of(path))) return read_plain_mesh(path, scene, stop);
     const MeshFile file(path, true);
-    largest_rounded = std::max(largest_rounded, file.largest_rounded());
+    scene.largest_rounded = std::max(scene.largest_rounded, file.largest_rounded());
+    file.crossing_faces().append_warning(path, scene.warnings);
     return whole_mesh_of(file);
 #else
     refuse(path, "this build of octopair reads no mesh files");
@@ -192,10 +194,11 @@ LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()), stop);
     const std::filesystem::path directory = std::filesystem::path(path).parent_path();
-    double largest_rounded = 0;
-    const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), largest_rounded); };
+    LoadedScene meshes;
+    const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), meshes, stop); };
     LoadedScene scene = parse_json_scene({text.data(), text.size()}, path, load, stop);
-    scene.largest_rounded = largest_rounded;
+    scene.largest_rounded = meshes.largest_rounded;
+    scene.warnings = std::move(meshes.warnings);
     return scene;
 }
 

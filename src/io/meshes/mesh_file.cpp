@@ -7,13 +7,13 @@
 #include <new>
 #include <numeric>
 
-#include <assimp/postprocess.h>
 #include <fmt/format.h>
 
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats.hpp"
+#include "io/meshes/faces/face_cutter.hpp"
 
 namespace octopair::io {
 
@@ -136,15 +136,17 @@ private:
 }  // namespace
 
 MeshFile::MeshFile(const std::string& path, bool triangles)
-    : path_(path), ifc_text_(read_text_of_ifc(path)), scene_(&import(path, triangles)) {
+    : path_(path), ifc_text_(read_text_of_ifc(path)), scene_(&import(path)) {
     used_vertices_.resize(scene_->mNumMeshes);
     instances_ = InstanceSearch(*scene_, path, ifc_text_.names).find();
     std::erase_if(instances_, [this](const MeshInstance& instance) { return !has_vertices(instance); });
+    cut_meshes_.resize(scene_->mNumMeshes);
+    if (triangles) cut_faces();
 }
 
-const aiScene& MeshFile::import(const std::string& path, bool triangles) {
+const aiScene& MeshFile::import(const std::string& path) {
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
-    const aiScene* scene = importer_.ReadFile(path, triangles ? unsigned(aiProcess_Triangulate) : 0u);
+    const aiScene* scene = importer_.ReadFile(path, 0u);
     readable.check_unchanged();
     if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
     rethrow_bad_alloc(importer_);
@@ -153,6 +155,32 @@ const aiScene& MeshFile::import(const std::string& path, bool triangles) {
         words.begin(), words.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
     refuse(path,
            words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words));
+}
+
+/// Cuts the faces of all meshes that have faces with more than three corners.
+void MeshFile::cut_faces() {
+    const std::stop_token never;
+    FaceCutter cutter(never);
+    std::vector<Point3d> places;
+    for (const MeshInstance& instance : instances_) {
+        for (const unsigned number : instance.meshes()) {
+            const std::span faces(mesh(number).mFaces, mesh(number).mNumFaces);
+            const auto has_more_corners = [](const aiFace& face) { return face.mNumIndices > 3; };
+            if (cut_meshes_[number] || std::none_of(faces.begin(), faces.end(), has_more_corners)) continue;
+            auto& triangles = cut_meshes_[number].emplace();
+            for (const aiFace& face : faces) {
+                places.clear();
+                for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
+                    for (const double at : places.emplace_back(vertex(mesh(number), index))) {
+                        if (!std::isfinite(at)) refuse_vertex(instance, index, at);
+                    }
+                }
+                if (!cutter.cut(places)) crossing_faces_.add(std::uint64_t(&face - faces.data()), instance.name);
+                for (const auto& [a, b, c] : cutter.triangles())
+                    triangles.push_back({face.mIndices[a], face.mIndices[b], face.mIndices[c]});
+            }
+        }
+    }
 }
 
 double MeshFile::largest_rounded() const {

@@ -4,6 +4,7 @@
 // - A vertex is used if a face of its mesh refers to it. If a mesh has no faces, all its vertices are used.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 #include <assimp/Importer.hpp>
 
 #include "io/meshes/bounded_pose.hpp"
+#include "io/meshes/faces/crossing_faces.hpp"
 #include "io/meshes/ifc_elements.hpp"
 
 namespace octopair::io {
@@ -32,7 +34,7 @@ struct MeshInstance {
 
 class MeshFile {
 public:
-    /// Reads a file. With `triangles`, faces with more than three corners are split into triangles.
+    /// Reads a file. With `triangles`, faces with more than three corners are cut into triangles (FaceCutter).
     /// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, and for a vertex index out of range;
     /// Error{io_failed}.
     MeshFile(const std::string& path, bool triangles);
@@ -49,6 +51,21 @@ public:
     /// Returns the used vertices of a mesh, each once, in the order of first use. Requires: an instance has the mesh.
     const std::vector<unsigned>& used_vertices(unsigned mesh) const { return *used_vertices_[mesh]; }
 
+    /// Calls visit(corners) for each triangle of a mesh, in the order of the faces. Points and lines have none.
+    /// Requires: an instance has the mesh; the file was read with `triangles`.
+    template <typename Visit>
+    void for_each_triangle(unsigned number, const Visit& visit) const {
+        if (cut_meshes_[number]) {
+            for (const Corners& corners : *cut_meshes_[number]) visit(corners);
+            return;
+        }
+        for (const aiFace& face : std::span(mesh(number).mFaces, mesh(number).mNumFaces)) {
+            if (face.mNumIndices == 3) visit(Corners{face.mIndices[0], face.mIndices[1], face.mIndices[2]});
+        }
+    }
+    /// Returns the faces that cross themselves, with the names of the first instances that have them.
+    const CrossingFaces& crossing_faces() const { return crossing_faces_; }
+
     static Point3d vertex(const aiMesh& mesh, unsigned index) {
         const aiVector3D& place = mesh.mVertices[index];
         return {double(place.x), double(place.y), double(place.z)};
@@ -60,7 +77,10 @@ public:
     [[noreturn]] void refuse_vertex(const MeshInstance& instance, unsigned index, double value) const;
 
 private:
-    const aiScene& import(const std::string& path, bool triangles);
+    using Corners = std::array<unsigned, 3>;
+
+    const aiScene& import(const std::string& path);
+    void cut_faces();
     bool has_vertices(const MeshInstance& instance);
     std::vector<unsigned> find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const;
 
@@ -71,6 +91,8 @@ private:
     std::vector<MeshInstance> instances_;
     std::vector<std::optional<std::vector<unsigned>>>
         used_vertices_;  // per mesh; empty until a node with the mesh is visited
+    std::vector<std::optional<std::vector<Corners>>> cut_meshes_;  // per mesh; set if it has faces with more corners
+    CrossingFaces crossing_faces_;
 };
 
 }  // namespace octopair::io

@@ -48,20 +48,19 @@ LoadedScene node_scene(const MeshFile& file) {
 
 void append_triangles(const MeshFile& file, const MeshInstance& instance, unsigned number, std::vector<Box3f>& boxes) {
     const aiMesh& mesh = file.mesh(number);
-    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
-        if (face.mNumIndices != 3) continue;
+    file.for_each_triangle(number, [&](const std::array<unsigned, 3>& corners) {
         Box3f box;
         for (unsigned k = 0; k < 3; ++k) {
-            const BoundedPoint point = file.posed_vertex(instance, mesh, face.mIndices[k]);
+            const BoundedPoint point = file.posed_vertex(instance, mesh, corners[k]);
             for (int axis = 0; axis < 3; ++axis) {
                 const float value = float(point.value[axis]);
-                if (!std::isfinite(value)) file.refuse_vertex(instance, face.mIndices[k], double(value));
+                if (!std::isfinite(value)) file.refuse_vertex(instance, corners[k], double(value));
                 box.min[axis] = k == 0 ? value : std::min(box.min[axis], value);
                 box.max[axis] = k == 0 ? value : std::max(box.max[axis], value);
             }
         }
         boxes.push_back(box);
-    }
+    });
 }
 
 LoadedScene triangle_scene(const MeshFile& file) {
@@ -102,6 +101,7 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
     }
     scene.largest_rounded = file.largest_rounded();
     scene.space = format_space(path);
+    file.crossing_faces().append_warning(path, scene.warnings);
     return scene;
 }
 

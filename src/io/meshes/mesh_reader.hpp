@@ -3,7 +3,7 @@
 //   node      The name is the node path from the root, joined by "/". A node without a name gives "#" and its position
 //             among its parent's children. The box is float64 and rounded outward. It encloses the vertices that faces use
 //             (all vertices, if a mesh has no faces), posed by the transforms along the path.
-//   triangle  The order is node by node, mesh by mesh, face by face. Faces with more corners are split into triangles.
+//   triangle  The order is node by node, mesh by mesh, face by face. Faces with more corners are cut into triangles.
 //             Points and lines are left out. The box is float32: posed vertices rounded once, then their min and max.
 //             Triangles have no names.
 //

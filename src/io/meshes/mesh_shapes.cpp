@@ -15,27 +15,30 @@ namespace {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-std::span<const aiFace> faces_of(const aiMesh& mesh) { return {mesh.mFaces, mesh.mNumFaces}; }
+/// A mesh of a file, by its number.
+struct NumberedMesh {
+    const MeshFile& file;
+    unsigned number;
+};
 
 /// Appends the triangles of a mesh to `to`. `place(i)` returns the position of vertex i.
 template <typename Place>
-void append_mesh(const aiMesh& mesh, const Place& place, shape::Mesh& to) {
-    std::vector<std::uint32_t> numbers(mesh.mNumVertices, none);
-    for (const aiFace& face : faces_of(mesh)) {
-        if (face.mNumIndices != 3) continue;
+void append_mesh(const NumberedMesh& mesh, const Place& place, shape::Mesh& to) {
+    std::vector<std::uint32_t> numbers(mesh.file.mesh(mesh.number).mNumVertices, none);
+    mesh.file.for_each_triangle(mesh.number, [&](const std::array<unsigned, 3>& corners) {
         std::array<std::uint32_t, 3> triangle;
         for (unsigned k = 0; k < 3; ++k) {
-            std::uint32_t& number = numbers[face.mIndices[k]];
+            std::uint32_t& number = numbers[corners[k]];
             if (number == none) {
                 if (to.vertices.size() == none)
                     throw Error(ErrorCode::resource_limit, "a mesh has more than 2^32 - 1 vertices");
                 number = std::uint32_t(to.vertices.size());
-                to.vertices.push_back(place(face.mIndices[k]));
+                to.vertices.push_back(place(corners[k]));
             }
             triangle[k] = number;
         }
         to.triangles.push_back(triangle);
-    }
+    });
 }
 
 shape::Mesh shape_of(const MeshFile& file, const MeshInstance& instance) {
@@ -43,7 +46,7 @@ shape::Mesh shape_of(const MeshFile& file, const MeshInstance& instance) {
     for (const unsigned number : instance.meshes()) {
         const aiMesh& mesh = file.mesh(number);
         append_mesh(
-            mesh, [&](unsigned index) { return MeshFile::vertex(mesh, index); }, shape);
+            {file, number}, [&](unsigned index) { return MeshFile::vertex(mesh, index); }, shape);
     }
     return shape;
 }
@@ -74,19 +77,18 @@ LoadedTriangles triangles_of(const MeshFile& file) {
         loaded.owner_names.push_back(instance.name);
         for (const unsigned number : instance.meshes()) {
             const aiMesh& mesh = file.mesh(number);
-            for (const aiFace& face : faces_of(mesh)) {
-                if (face.mNumIndices != 3) continue;
+            file.for_each_triangle(number, [&](const std::array<unsigned, 3>& corners) {
                 Triangle3d triangle;
                 for (unsigned k = 0; k < 3; ++k) {
-                    triangle[k] = file.posed_vertex(instance, mesh, face.mIndices[k]).value;
+                    triangle[k] = file.posed_vertex(instance, mesh, corners[k]).value;
                     for (const double value : triangle[k]) {
                         if (!std::isfinite(float(value)))
-                            file.refuse_vertex(instance, face.mIndices[k], double(float(value)));
+                            file.refuse_vertex(instance, corners[k], double(float(value)));
                     }
                 }
                 loaded.triangles.push_back(triangle);
                 loaded.owners.push_back(owner);
-            }
+            });
         }
     }
     return loaded;
@@ -98,7 +100,7 @@ shape::Mesh whole_mesh_of(const MeshFile& file) {
         for (const unsigned number : instance.meshes()) {
             const aiMesh& mesh = file.mesh(number);
             append_mesh(
-                mesh, [&](unsigned index) { return file.posed_vertex(instance, mesh, index).value; }, shape);
+                {file, number}, [&](unsigned index) { return file.posed_vertex(instance, mesh, index).value; }, shape);
         }
     }
     return shape;

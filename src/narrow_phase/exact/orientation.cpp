@@ -32,16 +32,6 @@ int plane_sign(const DyadicGrid<12>& grid) {
     return sum.sign();
 }
 
-template <typename Integer>
-int line_sign(const DyadicGrid<6>& grid) {
-    const auto au = grid.at<Integer>(0), av = grid.at<Integer>(1);
-    const Integer left = (grid.at<Integer>(2) - au) * (grid.at<Integer>(5) - av);
-    const Integer right = (grid.at<Integer>(3) - av) * (grid.at<Integer>(4) - au);
-    return left.compare(right);
-}
-
-int sign_of(int comparison) { return int(comparison > 0) - int(comparison < 0); }
-
 }  // namespace
 
 int exact_plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d) {
@@ -55,18 +45,6 @@ int exact_plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const
     if (grid.bits() <= 83) return plane_sign<Fixed<256>>(grid);
     if (grid.bits() <= 168) return plane_sign<Fixed<512>>(grid);
     return plane_sign<Unbounded>(grid);
-}
-
-int exact_line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis) {
-    const unsigned u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-    for (const unsigned across : {u, v}) {
-        if (a[across] == b[across] && a[across] == c[across]) return 0;
-    }
-    const DyadicGrid<6> grid({a[u], a[v], b[u], b[v], c[u], c[v]});
-    // Products of two differences: 2 * (bits + 1) bits.
-    if (grid.bits() <= 62) return sign_of(line_sign<Fixed<128>>(grid));
-    if (grid.bits() <= 126) return sign_of(line_sign<Fixed<256>>(grid));
-    return sign_of(line_sign<Unbounded>(grid));
 }
 
 }  // namespace octopair

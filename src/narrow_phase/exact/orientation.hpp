@@ -1,32 +1,21 @@
 // Orientation predicates: on which side of a plane or line a point lies. Exact for all finite float64 coordinates.
-//
-// Filter    A sign is first computed in float64. Each operation errs by at most 2^-53 of its result. So the sum errs by at
-//           most a small multiple of 2^-53 of the permanent: the same sum with all terms positive.
-// Underflow A term that underflows errs by less than the smallest number times a factor; filter::underflow is far larger.
-// Overflow  An overflow makes the permanent infinite or NaN, so the sign counts as undecided.
-// Exact     A sum beyond the error bound has the right sign. Otherwise the sign is computed again, with integers.
-// Source    Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, section 4.
+// geometry/line_side.hpp describes how the signs are computed.
 #pragma once
 
 #include <array>
 #include <cmath>
 
+#include "geometry/line_side.hpp"
 #include "octopair/pose.hpp"
 
 namespace octopair {
 
-/// Return the sign of plane_side() and line_side(), -1, 0 or 1, computed with integers. Slow.
+/// Returns the sign of plane_side(), -1, 0 or 1, computed with integers. Slow.
 int exact_plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d);
-int exact_line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis);
 
 namespace filter {
 
 inline constexpr double plane_error = 0x1p-50;  ///< above (7 + 56 * 2^-53) * 2^-53
-inline constexpr double line_error = 0x1p-51;   ///< above (3 + 16 * 2^-53) * 2^-53
-inline constexpr double underflow = 0x1p-900;   ///< far above the loss of all terms that underflow below 2^-1022
-
-/// Returns the sign of `sum` if its absolute value is larger than `error`; otherwise 0: float64 cannot decide the sign.
-inline int safe_sign(double sum, double error) { return int(sum > error) - int(sum < -error); }
 
 }  // namespace filter
 
@@ -67,16 +56,6 @@ private:
 /// Returns PlaneSides(a, b, c)(d).
 inline int plane_side(const Point3d& a, const Point3d& b, const Point3d& c, const Point3d& d) {
     return PlaneSides(a, b, c)(d);
-}
-
-/// Returns the sign of coordinate `axis` of (b - a) x (c - a): the side of the line from a to b on which c lies, projected
-/// along `axis`, which points to the viewer. 1: left, -1: right, 0: on the line.
-inline int line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis) {
-    const unsigned u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-    const double left = (b[u] - a[u]) * (c[v] - a[v]), right = (b[v] - a[v]) * (c[u] - a[u]);
-    const double permanent = std::abs(left) + std::abs(right);
-    const int sign = filter::safe_sign(left - right, filter::line_error * permanent + filter::underflow);
-    return sign != 0 ? sign : exact_line_side(a, b, c, axis);
 }
 
 }  // namespace octopair

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/meshes/faces/crossing_faces.hpp"
 #include "octopair/shapes.hpp"
 
 namespace octopair::io {
@@ -30,13 +31,14 @@ struct PlainMesh {
     std::vector<std::uint64_t> ends;
 
     void end_face() { ends.push_back(corners.size()); }
-    /// Returns the number of triangles that the faces are cut into: a face of n corners into n - 2.
+    /// Returns the number of triangles that faces are cut into that do not touch themselves: a face of n corners into n - 2.
     std::uint64_t triangles() const;
 };
 
-/// Cuts the faces into triangles, in order. Convex faces are cut from their first corner; other faces are cut into ears. Faces with
-/// fewer than three corners are left out.
-shape::Mesh cut_into_triangles(PlainMesh mesh);
+/// Cuts the faces into triangles, in order (FaceCutter). Faces with fewer than three corners are left out. Adds the faces that cross
+/// themselves to `crossing`, with the name of the mesh.
+/// Throws: Error{cancelled}.
+shape::Mesh cut_into_triangles(PlainMesh mesh, CrossingFaces& crossing, const std::stop_token& stop);
 
 /// Text or bytes of a file, and its name for messages.
 struct FileContent {

@@ -103,7 +103,8 @@ double largest_rounded(const std::vector<PlainMesh>& meshes) {
     return largest;
 }
 
-LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, bool shapes) {
+LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, const SceneContent& content,
+                       const std::stop_token& stop) {
     for (PlainMesh& mesh : meshes) keep_used_vertices(mesh);
     std::erase_if(meshes, [](const PlainMesh& mesh) { return mesh.vertices.empty(); });
     LoadedScene scene;
@@ -115,12 +116,15 @@ LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, b
     std::transform(meshes.begin(), meshes.end(), boxes.data(),
                    [](const PlainMesh& mesh) { return box_of(mesh.vertices); });
     scene.boxes = std::move(boxes);
-    if (!shapes) return scene;
+    if (!content.shapes) return scene;
     LoadedShapes& loaded = scene.shapes.emplace();
-    for (PlainMesh& mesh : meshes) {
+    CrossingFaces crossing;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        meshes[i].name = scene.names[i];
         loaded.geometry.push_back(std::uint32_t(loaded.shapes.size()));
-        loaded.shapes.emplace_back(cut_into_triangles(std::move(mesh)));
+        loaded.shapes.emplace_back(cut_into_triangles(std::move(meshes[i]), crossing, stop));
     }
+    crossing.append_warning(path, scene.warnings);
     loaded.poses.resize(meshes.size());
     loaded.parents.resize(meshes.size(), 0);
     return scene;
@@ -134,12 +138,16 @@ float rounded(double at, const std::string& path) {
     return value;
 }
 
-LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& path) {
+/// Returns the triangles of all meshes. Adds warnings about their faces to `warnings`.
+LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& path, std::vector<std::string>& warnings,
+                             const std::stop_token& stop) {
     LoadedTriangles loaded;
     loaded.owner_names = names_of(meshes, path);
     loaded.owner_details = details_of(meshes, loaded.owner_names);
+    CrossingFaces crossing;
     for (std::size_t owner = 0; owner < meshes.size(); ++owner) {
-        const shape::Mesh mesh = cut_into_triangles(std::move(meshes[owner]));
+        meshes[owner].name = loaded.owner_names[owner];
+        const shape::Mesh mesh = cut_into_triangles(std::move(meshes[owner]), crossing, stop);
         for (const auto& [a, b, c] : mesh.triangles) {
             loaded.triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
             loaded.owners.push_back(std::uint32_t(owner));
@@ -148,6 +156,7 @@ LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& p
             }
         }
     }
+    crossing.append_warning(path, warnings);
     return loaded;
 }
 
@@ -180,12 +189,12 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
     const double largest = largest_rounded(meshes);
     LoadedScene scene;
     if (content.objects == MeshObjects::node) {
-        scene = node_scene(std::move(meshes), path, content.shapes);
+        scene = node_scene(std::move(meshes), path, content, stop);
         scene.largest_rounded = largest;
         return scene;
     }
     scene.largest_rounded = largest;
-    LoadedTriangles loaded = triangles_of(std::move(meshes), path);
+    LoadedTriangles loaded = triangles_of(std::move(meshes), path, scene.warnings, stop);
     scene.objects = loaded.triangles.size();
     if (content.shapes) {
         scene.triangles = std::move(loaded);
@@ -195,16 +204,20 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
     return scene;
 }
 
-shape::Mesh read_plain_mesh(const std::string& path, double& largest, const std::stop_token& stop) {
+shape::Mesh read_plain_mesh(const std::string& path, LoadedScene& scene, const std::stop_token& stop) {
     shape::Mesh whole;
     std::vector<PlainMesh> meshes = read_meshes(path, stop, {});
-    largest = std::max(largest, largest_rounded(meshes));
-    for (PlainMesh& mesh : meshes) {
+    scene.largest_rounded = std::max(scene.largest_rounded, largest_rounded(meshes));
+    const std::vector<std::string> names = names_of(meshes, path);
+    CrossingFaces crossing;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        meshes[i].name = names[i];
         const auto first = std::uint32_t(whole.vertices.size());
-        const shape::Mesh part = cut_into_triangles(std::move(mesh));
+        const shape::Mesh part = cut_into_triangles(std::move(meshes[i]), crossing, stop);
         whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());
         for (const auto& [a, b, c] : part.triangles) whole.triangles.push_back({a + first, b + first, c + first});
     }
+    crossing.append_warning(path, scene.warnings);
     return whole;
 }
 

@@ -18,7 +18,8 @@ bool is_plain_ending(std::string_view ending);
 /// Throws: what the parsers throw (plain_mesh.hpp); Error{io_failed, resource_limit}.
 LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop);
 
-/// Reads all meshes of such a file as one. Sets `largest` to the file's LoadedScene::largest_rounded, if that is larger.
-shape::Mesh read_plain_mesh(const std::string& path, double& largest, const std::stop_token& stop);
+/// Reads all meshes of such a file as one, for a scene that names it. Adds the file's LoadedScene::largest_rounded and warnings to
+/// `scene`.
+shape::Mesh read_plain_mesh(const std::string& path, LoadedScene& scene, const std::stop_token& stop);
 
 }  // namespace octopair::io

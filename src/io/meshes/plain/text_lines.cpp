@@ -87,12 +87,12 @@ std::uint64_t TextLines::integer(std::string_view what, std::uint64_t most) {
     line_ = without_space_before(line_);
     constexpr std::size_t safe_digits = 19;  // they fit into 64 bits
     std::uint64_t value = 0;
-    std::size_t digits = 0;
-    while (digits < std::min(line_.size(), safe_digits) && line_[digits] >= '0' && line_[digits] <= '9')
-        value = value * 10 + std::uint64_t(line_[digits++] - '0');
-    const bool is_integer = digits > 0 && (digits == line_.size() || is_space(line_[digits])) && value <= most;
+    std::size_t length = 0;
+    while (length < std::min(line_.size(), safe_digits) && line_[length] >= '0' && line_[length] <= '9')
+        value = value * 10 + std::uint64_t(line_[length++] - '0');
+    const bool is_integer = length > 0 && (length == line_.size() || is_space(line_[length])) && value <= most;
     if (!is_integer) refuse_integer(what, most);
-    line_.remove_prefix(digits);
+    line_.remove_prefix(length);
     return value;
 }
 

@@ -1,0 +1,41 @@
+// FaceCutter: cuts faces with any number of corners into triangles.
+//
+// - Everything is decided exactly, in the plane of two coordinate axes across which the area vector of the outline is largest.
+// - A convex face is cut from its first corner. Other faces are cut by a sweep (outline_sweep.hpp): the triangles are the inside of the
+//   outline, also if it touches itself, and have its sense.
+// - A face that crosses itself or folds in the plane has no such triangles. It is cut into ears, within the convex hull of its corners.
+// - The edges of the triangles are those of the outline, and others that cancel in pairs. So a closed mesh stays closed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "io/meshes/faces/plane_outline.hpp"
+
+namespace octopair::io {
+
+class FaceCutter {
+public:
+    using Triangle = std::array<std::uint32_t, 3>;
+
+    /// Borrows `stop`: it must outlive this object.
+    explicit FaceCutter(const std::stop_token& stop) : check_(stop) {}
+
+    /// Cuts a face, given by the places of its corners in order. A face with fewer than three corners has no triangles.
+    /// Returns false if the outline crosses itself or folds.
+    /// Throws: Error{cancelled}. Complexity: O(n log n) for n corners.
+    bool cut(std::span<const Point3d> outline);
+    /// Returns the triangles of the last face, by the positions of its corners.
+    std::span<const Triangle> triangles() const { return triangles_; }
+
+private:
+    void cut_from_first_corner(std::size_t corners);
+
+    StopCheck check_;
+    std::vector<Triangle> triangles_;
+};
+
+}  // namespace octopair::io
