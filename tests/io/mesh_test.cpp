@@ -79,6 +79,30 @@ const std::string instances_gltf = R"({
   "buffers": [{"byteLength": 36, "uri": "triangle.bin"}]
 })";
 
+TEST_F(Mesh, FacesThatTouchThemselvesAreCutWithinTheirOutline) {
+    const std::string vertices = "v 0 0 0\nv 10 5 0\nv 0 10 0\nv 4 5 0\n";
+    const LoadedScene nodes = read("a.obj", vertices + "f 1 2 2 3 4\n", MeshObjects::node, true);
+    EXPECT_EQ(nodes.warnings, std::vector<std::string>{});
+    const auto& mesh = std::get<shape::Mesh>(nodes.shapes->shapes[0]);
+    const LoadedScene triangles = read("a.obj", vertices + "f 1 2 2 3 4\n", MeshObjects::triangle, true);
+    ASSERT_EQ(triangles.triangles->triangles.size(), mesh.triangles.size());
+    double area = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        Triangle3d corners;
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.vertices[mesh.triangles[i][k]];
+        EXPECT_EQ(triangles.triangles->triangles[i], corners);
+        const auto& [a, b, c] = corners;
+        area += std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2;
+    }
+    EXPECT_EQ(area, 30);
+    EXPECT_EQ(read("a.obj", vertices + "f 1 2 2 3 4\n", MeshObjects::triangle).objects, mesh.triangles.size());
+
+    const LoadedScene crossing = read("b.obj", vertices + "v 10 10 0\nf 1 2 3 4\nf 1 5 2 3\n", MeshObjects::node, true);
+    ASSERT_EQ(crossing.warnings.size(), 1u);
+    EXPECT_NE(crossing.warnings[0].find("b.obj: 1 face crosses itself or folds (the first: face "), std::string::npos)
+        << crossing.warnings[0];
+}
+
 TEST_F(Mesh, InstancesArePosedAndNamedByPath) {
     write_file(directory_.file("triangle.bin"), bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}));
     const LoadedScene scene = read("i.gltf", instances_gltf, MeshObjects::node);
