@@ -193,6 +193,10 @@ TEST_F(Mesh, RefusesVerticesThatAreNowhere) {
             error_of(ErrorCode::bad_input, [&] { (void)read("i.gltf", instances_gltf, objects); });
         // The message has the number of the file. After the pose, the number would be nan: -infinity times 0.
         EXPECT_NE(words.find("vertex 2 has the coordinate -inf, which is not finite"), std::string::npos) << words;
+        const std::string of_quad = error_of(ErrorCode::bad_input, [&] {
+            (void)read("q.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 nan 0\n0 1 0\n4 0 1 2 3\n", objects, true);
+        });
+        EXPECT_NE(of_quad.find("has the coordinate nan, which is not finite"), std::string::npos) << of_quad;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdio>
 #include <cstring>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -277,6 +278,14 @@ TEST(PlainMesh, FacesAreCutWithinTheirOutline) {
         mesh.end_face();
         EXPECT_EQ(io::cut_into_triangles(mesh, crossing, never).triangles.size(), odd.size() - 2);
     }
+}
+
+TEST(PlainMesh, CuttingCanBeStopped) {
+    std::stop_source source;
+    source.request_stop();
+    io::CrossingFaces crossing;
+    const io::PlainMesh mesh = off("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    (void)error_of(ErrorCode::cancelled, [&] { (void)io::cut_into_triangles(mesh, crossing, source.get_token()); });
 }
 
 TEST(PlainMesh, CrossingFacesAreTold) {
