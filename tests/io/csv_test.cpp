@@ -64,6 +64,16 @@ TEST(Csv, NamesTheLine) {
     EXPECT_EQ(csv_refusal(std::string("0,0,0,1,1,\x01\0x\n", 14)), "f.csv: line 1: field 6 is not a number: '??x'");
 }
 
+/// A carriage return elsewhere is a sign of damage, or of lines that end with it alone.
+TEST(Csv, ACarriageReturnOnlyEndsALine) {
+    EXPECT_EQ(parsed_csv("0,0,0,1,1,1\r\n\r\n2,2,2,3,3,3\r").size(), 2u);
+    EXPECT_EQ(csv_refusal("0,0,0\r,1,1,1\n"), "f.csv: line 1: field 3 is not a number: '0?'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,\r1,1\n"), "f.csv: line 1: field 5 is not a number: '?1'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\r\r\n"), "f.csv: line 1: field 6 is not a number: '1?'");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\r2,2,2,3,3,3\r"), "f.csv: line 1: 11 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\n\r\r\n"), "f.csv: line 2: 1 fields, not 6 numbers");
+}
+
 TEST(Csv, IgnoresTheLocale) {
     const char* set = std::setlocale(LC_ALL, "de_DE.UTF-8");
     EXPECT_EQ(parsed_csv("0.5,0,0,1.5,1,1\n")[0].min[0], 0.5) << (set != nullptr ? set : "no such locale here");

@@ -165,6 +165,15 @@ TEST(JsonScene, RefusesWhatIsNoJson) {
               "f.json: objects[0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]: more than 16 levels of nesting");
 }
 
+/// The parser of the library takes a byte 0 as the end of the text.
+TEST(JsonScene, RefusesAByteZero) {
+    for (const std::string rest : {"", "{", "\n{\"objects\": [7]}"}) {
+        const std::string text = "{\"objects\": []}" + std::string(1, '\0') + rest;
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)parsed_scene(text); }),
+                  "f.json: byte 15 is 0; a JSON file is text");
+    }
+}
+
 #if defined(OCTOPAIR_WITH_PIPELINE) && defined(OCTOPAIR_WITH_MESHES)
 TEST(JsonScene, MeshesAreInFilesBesideIt) {
     const TemporaryDirectory directory;

@@ -85,6 +85,8 @@ TEST_F(ServeOptions, LinesInAnotherFormAreRefused) {
              {"tokens = a\"b\"", word},
              {"tokens = \"\"\"a\"\"\"", word},
              {"tokens = \"a\" \"b\"", word},
+             {"tokens = 'a\rb'", "a carriage return must be at the end of a line"},
+             {"# quiet = true\rmax-jobs = 5", "a carriage return must be at the end of a line"},
              {"tokens = \"a", open},
              {"tokens = 'a\"", open},
              {"tokens = \"a\\x62\"", "a value with a backslash must be in single quotes"}}) {

@@ -52,6 +52,8 @@ class LineReader {
 public:
     explicit LineReader(std::string_view line) : rest_(line) {
         if (rest_.ends_with('\r')) rest_.remove_suffix(1);
+        if (rest_.find('\r') != std::string_view::npos)
+            throw WrongLine{"a carriage return must be at the end of a line"};
         skip_blanks();
     }
 

@@ -12,6 +12,13 @@ namespace octopair::cli {
 
 namespace {
 
+/// Returns a value for messages, with ? for control characters.
+std::string shown_value(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');
+    return text;
+}
+
 template <typename Number>
 bool parse_whole_text(const std::string& text, Number& number) {
     const char* end = text.data() + text.size();
@@ -23,14 +30,15 @@ bool parse_whole_text(const std::string& text, Number& number) {
 
 void check_value(std::string_view option, const std::vector<std::string_view>& valid, const std::string& value) {
     if (std::find(valid.begin(), valid.end(), value) != valid.end()) return;
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: '{}' is not a valid value; valid values: {}", option, value, fmt::join(valid, ", ")));
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a valid value; valid values: {}", option,
+                                              shown_value(value), fmt::join(valid, ", ")));
 }
 
 std::uint64_t parse_count(std::string_view option, const std::string& text, std::uint64_t most) {
     std::uint64_t number = 0;
     if (parse_whole_text(text, number) && number <= most) return number;
-    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a whole number from 0 to {}", option, text, most));
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: '{}' is not a whole number from 0 to {}", option, shown_value(text), most));
 }
 
 std::uint64_t parse_bytes(std::string_view option, const std::string& text) {
@@ -42,14 +50,14 @@ std::uint64_t parse_bytes(std::string_view option, const std::string& text) {
     if (parse_whole_text(digits, number) && number <= std::numeric_limits<std::uint64_t>::max() >> shift) {
         return number << shift;
     }
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: '{}' is not a number of bytes, for example 65536, 64K or 4G", option, text));
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a number of bytes, for example 65536, 64K or 4G", option,
+                                              shown_value(text)));
 }
 
 double parse_length(std::string_view option, const std::string& text) {
     double number = 0;
     if (parse_whole_text(text, number) && std::isfinite(number) && number >= 0) return number;
-    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a finite number >= 0", option, text));
+    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a finite number >= 0", option, shown_value(text)));
 }
 
 std::string grouped(std::uint64_t number) {

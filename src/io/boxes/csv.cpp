@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t columns = 6;
 
 std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r");
+    const std::size_t begin = text.find_first_not_of(" \t");
     if (begin == std::string_view::npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
+    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
 enum class Verdict : std::uint8_t { number, beyond_range, no_number };

@@ -2,7 +2,7 @@
 //
 // - Numbers have the syntax of std::from_chars (independent of the locale), with an optional plus sign.
 // - Spaces and tabs around a number are ignored.
-// - Lines end with '\n' or "\r\n". Blank lines are ignored.
+// - Lines end with '\n' or "\r\n". A '\r' elsewhere is refused. Blank lines are ignored.
 // - The first line is a header if it has six fields and none of them is a number.
 #pragma once
 

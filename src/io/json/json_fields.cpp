@@ -108,6 +108,9 @@ void refuse_json_type(const std::string& place, const json& value, std::string_v
 }
 
 json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop) {
+    // The parser would take a byte 0 as the end of the text, and ignore the rest.
+    if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
+        refuse(file, fmt::format("byte {} is 0; a JSON file is text", zero));
     ParseMonitor monitor(file, stop);
     try {
         return json::parse(text, [&monitor](int depth, json::parse_event_t event, const json& parsed) {

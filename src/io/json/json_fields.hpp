@@ -18,7 +18,7 @@
 namespace octopair::io {
 
 /// Parses `text`. `file` is the name that messages begin with.
-/// Throws: Error{bad_input} for a syntax error, a key that one object has twice, or more than 16 levels of nesting;
+/// Throws: Error{bad_input} for a syntax error, a byte 0, a key that one object has twice, or more than 16 levels of nesting;
 /// Error{cancelled} soon after a stop request.
 nlohmann::json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop = {});
 
