@@ -3,6 +3,7 @@
 
 #include "service/guarded.hpp"
 #include "service/protocol/octopair.pb.h"
+#include "service/protocol/private_file.hpp"
 
 namespace octopair::test {
 namespace {
@@ -92,6 +93,23 @@ TEST_F(Access, TokenFilesThatHoldNoneAreRefused) {
               file + ": line 2: an earlier line has the same name or token");
     ASSERT_EQ(::unlink(file.c_str()), 0);
     EXPECT_NE(refusal_of(with_tokens(socket()), ErrorCode::io_failed).find(file), std::string::npos);
+}
+
+TEST_F(Access, TokenFilesOfClientsHaveOneToken) {
+    const std::string file = folder_.file("token");
+    for (const std::string content : {"0123456789abcdef", "0123456789abcdef\n", " 0123456789abcdef\t\r\n"}) {
+        write_secret(file, content);
+        EXPECT_EQ(service::read_token(file), "0123456789abcdef");
+    }
+    for (const std::string& content : {std::string(), std::string("\n"), std::string("01234567 89abcdef"),
+                                       std::string("0123456789abcdef\v"), std::string("01234567\n89abcdef"),
+                                       std::string("\xEF\xBB\xBF"
+                                                   "0123456789abcdef"),
+                                       std::string("0123456789abcde\0f", 17)}) {
+        write_secret(file, content);
+        EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)service::read_token(file); }),
+                  file + ": must hold exactly one token, of printable ASCII characters");
+    }
 }
 
 TEST_F(Access, AddressesThatOthersReachNeedProtection) {

@@ -318,12 +318,16 @@ TEST_F(TokenLines, MayHoldHashes) {
 TEST_F(TokenLines, ThatAreNearlyRightAreRefused) {
     const std::string hash = "ec5f5bd74fe6158aa9084539e49b1dc8564f45d7cb2fb548090013acd3b643eb";
     const std::string begin = folder_.file("tokens") + ": line 1: ";
-    for (const std::string name :
-         {"SHA256:", "Sha256:", "sha-256:", "sha512:", "SHA256=", "sha256=", "md5:", "sha256$"})
+    for (const std::string name : {"SHA256:", "Sha256:", "sha-256:", "sha512:", "SHA256=", "sha256=", "md5:", "sha256$",
+                                   "sha256", "sha256-", "sha256;", "sha256a"})
         EXPECT_EQ(wrong("anna " + name + hash), begin + "a hash must be written as sha256: and 64 hexadecimal digits")
             << name;
     for (const std::string name : {"token:anna", "\357\273\277anna", "an\1na"})
         EXPECT_EQ(wrong(name + " anna-0123456789ab").find(begin + "a name "), 0u) << name;
+    EXPECT_EQ(wrong("anna\vanna-0123456789ab"),
+              begin + "a name has no control characters, and no byte order mark before it");
+    EXPECT_EQ(wrong("anna anna-0123456789ab\funtil=2099-12-31"),
+              begin + "a token must consist of printable ASCII characters");
     for (const std::string end : {"UNTIL=2099-12-31", "until=2099-12-31 x", "2099-12-31"})
         EXPECT_EQ(wrong("anna anna-0123456789ab " + end),
                   begin + "a line must be NAME TOKEN, or NAME TOKEN until=TIME");
@@ -340,6 +344,9 @@ TEST_F(TokenLines, MayExpire) {
     EXPECT_TRUE(accepts("anna anna-0123456789ab until=9999-12-31"));
     EXPECT_TRUE(accepts("anna anna-0123456789ab until=2262-05-01T00:00:00Z"));
     EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29"));
+    // The nanoseconds of these years are beyond 64 bits, and without their high bits in this century.
+    for (const char* year : {"0000", "0900", "1027", "1442", "1527", "1677", "1969"})
+        EXPECT_FALSE(accepts("anna anna-0123456789ab until=" + std::string(year) + "-12-31")) << year;
     EXPECT_FALSE(accepts("anna anna-0123456789ab until=2020-02-29T12:00:00Z"));
     const std::string file = folder_.file("tokens");
     for (const char* time : {"tomorrow",

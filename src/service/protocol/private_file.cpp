@@ -4,9 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <sstream>
+#include <string_view>
 
 #include "base/descriptor.hpp"
 #include "base/io_failure.hpp"
@@ -53,9 +54,13 @@ std::string read_private_file(const std::string& path) {
 }
 
 std::string read_token(const std::string& path) {
-    std::istringstream words(read_private_file(path));
-    std::string token, rest;
-    if (!(words >> token) || words >> rest) throw Error(ErrorCode::bad_input, path + ": must hold exactly one token");
+    constexpr std::string_view blanks = " \t\r\n";
+    std::string token = read_private_file(path);
+    token.erase(0, std::min(token.find_first_not_of(blanks), token.size()));
+    token.erase(token.find_last_not_of(blanks) + 1);
+    const bool printable = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c <= '~'; });
+    if (token.empty() || !printable)
+        throw Error(ErrorCode::bad_input, path + ": must hold exactly one token, of printable ASCII characters");
     return token;
 }
 

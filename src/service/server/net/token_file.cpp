@@ -48,6 +48,7 @@ std::optional<Time> time_from(std::string_view text) {
     const year_month_day date{year(number(0, 4)), month(unsigned(number(5, 2))), day(unsigned(number(8, 2)))};
     if (!date.ok()) return {};
     if (date.year() > year(2261)) return Time::max();  // the last whole year that system_clock holds
+    if (date.year() < year(1970)) return Time::min();  // it holds none before 1678
     if (text.size() == date_form.size()) return sys_days(date) + days(1);
     const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
     if (hour > 23 || minute > 59 || second > 59) return {};
@@ -57,15 +58,28 @@ std::optional<Time> time_from(std::string_view text) {
 /// Returns whether a token looks like a hash in another form than that of a token file, such as SHA256:... or sha512:...
 bool is_other_hash(std::string_view word) {
     constexpr std::size_t shortest_hash = 32;
-    const std::size_t sign = word.find_first_of(":=$");
-    if (sign == std::string_view::npos) return false;
-    std::string name(word.substr(0, sign));
+    std::string name(word.substr(0, word.find_first_of(":=$")));
     std::ranges::transform(name, name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    const std::size_t last = word.find_last_not_of("0123456789abcdefABCDEF");  // before the digits at the end
+    const bool has_digits = word.size() - (last + 1) >= shortest_hash;
+    if (name.starts_with("sha") && has_digits) return true;
+    if (name.size() == word.size()) return false;
     const bool is_sha =
         name.starts_with("sha") && name.size() <= 7 && name.find_first_not_of("-0123456789", 3) == std::string::npos;
-    const std::string_view digits = word.substr(sign + 1);
-    const bool hexadecimal = digits.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
-    return is_sha || (hexadecimal && digits.size() >= shortest_hash);
+    return is_sha || (has_digits && last == name.size());
+}
+
+/// Returns the words of a line. Only blanks divide words.
+std::vector<std::string> words_of(std::string_view line) {
+    constexpr std::string_view blanks = " \t";
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    std::vector<std::string> words;
+    for (std::size_t begin = line.find_first_not_of(blanks); begin != std::string_view::npos;) {
+        const std::size_t end = line.find_first_of(blanks, begin);
+        words.emplace_back(line.substr(begin, end - begin));
+        begin = line.find_first_not_of(blanks, end);
+    }
+    return words;
 }
 
 /// A line of the file. Its members throw Error{bad_input} that names the line.
@@ -119,15 +133,13 @@ std::vector<Token> read_token_file(const std::string& path) {
     std::size_t number = 0;
     for (std::string text; std::getline(in, text);) {
         const Line line{path, ++number};
-        std::istringstream words(text);
-        std::string name, token, more, rest;
-        if (!(words >> name) || name.front() == '#') continue;
-        line.check_name(name);
-        if (!(words >> token)) line.refuse("a line must be NAME TOKEN, or NAME TOKEN until=TIME");
-        Token read{name, line.digest(token), {}};
-        if (words >> more) read.until = line.until(more);
-        if (words >> rest) line.refuse("a line must be NAME TOKEN, or NAME TOKEN until=TIME");
-        const auto same = [&](const Token& known) { return known.name == name || known.digest == read.digest; };
+        const std::vector<std::string> words = words_of(text);
+        if (words.empty() || words[0].front() == '#') continue;
+        line.check_name(words[0]);
+        if (words.size() != 2 && words.size() != 3) line.refuse("a line must be NAME TOKEN, or NAME TOKEN until=TIME");
+        Token read{words[0], line.digest(words[1]), {}};
+        if (words.size() == 3) read.until = line.until(words[2]);
+        const auto same = [&](const Token& known) { return known.name == read.name || known.digest == read.digest; };
         if (std::any_of(tokens.begin(), tokens.end(), same)) line.refuse("an earlier line has the same name or token");
         tokens.push_back(std::move(read));
     }

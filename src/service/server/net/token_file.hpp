@@ -2,7 +2,7 @@
 //
 // Each line is NAME TOKEN [until=TIME]. TOKEN is the token itself, or "sha256:" and the SHA-256 of the token in 64 hexadecimal digits.
 // TIME is a date (the token expires when this day ends, in UTC), or a time as in 2027-01-31T12:00:00Z. Lines that begin with # are
-// comments.
+// comments. Spaces and tabs divide words, and "\r" may end a line.
 #pragma once
 
 #include <array>
