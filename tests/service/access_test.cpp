@@ -112,6 +112,15 @@ TEST_F(Access, TokenFilesOfClientsHaveOneToken) {
     }
 }
 
+/// The path is not a URI: a token for one socket must not go to another.
+TEST_F(Access, PathsOfSocketsMayHaveAnyCharacters) {
+    for (const std::string name : {"so%63ket", "a b", "socket?x", "socket#x", "100%", "t\u00fcr", "a:b@c"}) {
+        const std::string address = "unix:/" + folder_.file(name);  // begins with two slashes
+        const service::Server server(with_tokens(address), silent());
+        EXPECT_EQ(ask(address, with(right)), right_answer) << name;
+    }
+}
+
 TEST_F(Access, AddressesThatOthersReachNeedProtection) {
     for (const std::string address : {"0.0.0.0:0", "[::]:0", "192.0.2.1:0", "[::ffff:127.0.0.1]:0"}) {
         EXPECT_EQ(refusal_of(options_at(address), ErrorCode::usage),
