@@ -125,11 +125,36 @@ TEST(ServedPatience, CanBeStopped) {
 }
 
 TEST(ServedPatience, WrongAddressesAreRefused) {
-    for (const char* address :
-         {"", "unix:", "localhost", "localhost:", ":1", "localhost:65536", "localhost:1x", "::1:80"}) {
+    for (const char* address : {"",
+                                "unix:",
+                                "localhost",
+                                "localhost:",
+                                ":1",
+                                "localhost:65536",
+                                "localhost:1x",
+                                "::1:80",
+                                "[:]:80",
+                                "[::1%]:80",
+                                "[::1 ]:80",
+                                "[::g]:80",
+                                "local/host:80",
+                                "local\nhost:80",
+                                "user@host:80",
+                                "127.1:80",
+                                "127.0.0.01:80",
+                                "127.0.0.256:80",
+                                "0x7f.0.0.1:80",
+                                "2130706433:80",
+                                "127.0.0.1.:80"}) {
         SCOPED_TRACE(address);
         EXPECT_EQ(test::code_of([&] { (void)connect(address); }), ErrorCode::usage);
     }
+    using namespace std::string_literals;
+    for (const std::string& address : {"unix:a\0b"s, "[::1\0]:80"s, "::1\0:80"s})
+        EXPECT_EQ(test::code_of([&] { (void)connect(address); }), ErrorCode::usage);
+    EXPECT_EQ(
+        test::error_of(ErrorCode::usage, [] { (void)connect("local\x1B[1m:80"); }),
+        "address 'local?[1m:80' has a character in its host that no host name can have; give unix:PATH or HOST:PORT");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "service/protocol/address.hpp"
 
+#include <arpa/inet.h>
 #include <netdb.h>
 #include <netinet/in.h>
 
@@ -15,14 +16,45 @@ namespace {
 constexpr std::string_view unix_prefix = "unix:";
 
 [[noreturn]] void refuse(std::string_view text, const char* why) {
-    throw Error(ErrorCode::usage, "address '" + std::string(text) + "' " + why + "; give unix:PATH or HOST:PORT");
+    std::string shown(text);
+    std::replace_if(
+        shown.begin(), shown.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }, '?');
+    throw Error(ErrorCode::usage, "address '" + shown + "' " + why + "; give unix:PATH or HOST:PORT");
 }
 
-bool may_be_in_host(char c) { return c > ' ' && c != 127 && c != '[' && c != ']'; }
+constexpr std::string_view decimal_digits = "0123456789";
+/// Characters of host names, and of the names of network interfaces.
+constexpr std::string_view name_characters = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz.-_";
+
+bool is_name(std::string_view text) {
+    return !text.empty() && text.find_first_not_of(name_characters) == std::string_view::npos;
+}
+
+bool is_numeric(int family, std::string_view text) {
+    in6_addr address;
+    if (text.find('\0') != std::string_view::npos) return false;
+    return ::inet_pton(family, std::string(text).c_str(), &address) == 1;
+}
+
+/// Returns whether `host` ends in a number. So it is no name, and getaddrinfo() reads it as an IPv4 address in one of many forms: 127.1,
+/// 0x7f.0.0.1 and 0177.0.0.1 are 127.0.0.1, but 127.0.0.011 is 127.0.0.9.
+bool ends_in_number(std::string_view host) {
+    if (host.ends_with('.')) host.remove_suffix(1);
+    const std::string_view last = host.substr(host.rfind('.') + 1);
+    if (last.starts_with("0x") || last.starts_with("0X"))
+        return last.find_first_not_of("0123456789abcdefABCDEF", 2) == std::string_view::npos;
+    return !last.empty() && last.find_first_not_of(decimal_digits) == std::string_view::npos;
+}
+
+/// Returns whether `text` is an IPv6 address, with a network interface behind % or without.
+bool is_ipv6(std::string_view text) {
+    const std::size_t percent = text.find('%');
+    return is_numeric(AF_INET6, text.substr(0, percent)) &&
+           (percent == std::string_view::npos || is_name(text.substr(percent + 1)));
+}
 
 bool is_port(std::string_view text) {
-    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    return !text.empty() && text.size() <= 5 && std::all_of(text.begin(), text.end(), is_digit) &&
+    return !text.empty() && text.size() <= 5 && text.find_first_not_of(decimal_digits) == std::string_view::npos &&
            std::stoul(std::string(text)) <= 65535;
 }
 
@@ -49,13 +81,14 @@ Address parse_address(std::string_view text) {
     if (!is_port(port)) refuse(text, "has no port from 0 to 65535");
     if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
         host = host.substr(1, host.size() - 2);
-        if (host.find(':') == std::string_view::npos) refuse(text, "has no IPv6 address in its brackets");
-    } else if (host.find(':') != std::string_view::npos) {
-        refuse(text, "has an IPv6 address without brackets");
+        if (!is_ipv6(host)) refuse(text, "has no IPv6 address in its brackets");
+        return {{}, std::string(host), std::string(port)};
     }
+    if (host.find(':') != std::string_view::npos) refuse(text, "has an IPv6 address without brackets");
     if (host.empty()) refuse(text, "names no host");
-    if (!std::all_of(host.begin(), host.end(), may_be_in_host))
-        refuse(text, "has a character in its host that no host name can have");
+    if (!is_name(host)) refuse(text, "has a character in its host that no host name can have");
+    if (ends_in_number(host) && !is_numeric(AF_INET, host))
+        refuse(text, "has no IPv4 address: four numbers from 0 to 255 without zeros in front");
     return {{}, std::string(host), std::string(port)};
 }
 
