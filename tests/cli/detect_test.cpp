@@ -121,7 +121,7 @@ TEST_F(Detect, AnInputWithoutObjectsIsAWarningOrAnError) {
     EXPECT_NE(content("s.json").find("empty.npy: has no object"), std::string::npos);
     for (const char* inputs : {"full.npy empty.npy", "full.npy --against empty.npy", "empty.npy --events"}) {
         const Outcome refused = run("detect " + std::string(inputs) + " --fail-on-collision");
-        EXPECT_EQ(refused.status, 2) << inputs;
+        EXPECT_EQ(refused.status, 3) << inputs;
         EXPECT_NE(refused.err.find("empty.npy: has no object, so --fail-on-collision"), std::string::npos)
             << refused.err;
     }

@@ -13,11 +13,11 @@ namespace {
 /// Supports streams and counts only. Servers make no other calls.
 class GatedEngine final : public Engine {
 public:
-    explicit GatedEngine(Gate& gate) : gate_(gate) {}
+    GatedEngine(Gate& gate, std::size_t free_below) : gate_(gate), free_below_(free_below) {}
 
 private:
     Summary run(const detail::Request& request, const detail::Output& output, const detail::Control& control) override {
-        gate_.pass(control.stop);
+        if (request.first.size() >= free_below_) gate_.pass(control.stop);
         const PairSink sink = output.sink != nullptr ? *output.sink : PairSink();
         const Input input(request.first, request.second != nullptr ? std::optional(*request.second) : std::nullopt);
         return inner_->stream_pairs(input, sink, request.options, control.stop);
@@ -25,6 +25,7 @@ private:
     detail::JobQueue& jobs() override { return jobs_; }
 
     Gate& gate_;
+    const std::size_t free_below_;
     std::unique_ptr<Engine> inner_ = make_local_engine(1);
     detail::JobQueue jobs_{*this};
 };
@@ -62,8 +63,8 @@ bool Gate::wait_for(unsigned waiting) {
     return changed_.wait_for(lock, std::chrono::minutes(1), [&] { return waiting_ >= waiting; });
 }
 
-service::EngineMaker gated_engines(Gate& gate) {
-    return [&gate](unsigned) { return std::make_unique<GatedEngine>(gate); };
+service::EngineMaker gated_engines(Gate& gate, std::size_t free_below) {
+    return [&gate, free_below](unsigned) { return std::make_unique<GatedEngine>(gate, free_below); };
 }
 
 }  // namespace octopair::test

@@ -32,7 +32,7 @@ private:
     unsigned waiting_ = 0;
 };
 
-/// Returns a maker of local engines of one thread behind the gate.
-service::EngineMaker gated_engines(Gate& gate);
+/// Returns a maker of local engines of one thread behind the gate. Calls with fewer objects than `free_below` pass at once.
+service::EngineMaker gated_engines(Gate& gate, std::size_t free_below = 0);
 
 }  // namespace octopair::test

@@ -132,6 +132,26 @@ TEST_P(Certificates, AgreeWithTheNarrowPhase) {
     EXPECT_GT(found[std::size_t(CollisionClass::contained)], 0);
 }
 
+/// A depth without bounds would contradict nothing. Bounds for two balls around one place converge slowly. Symmetric bodies are the hard ones: all points that a search finds may be in a plane.
+TEST_P(Certificates, BoundTheDepthOfAllKinds) {
+    for (int second = 0; second < kinds; ++second) {
+        for (const Point3d place : {Point3d{0.1, 0, 0}, Point3d{0, 0, -0.1}, Point3d{0.05, 0.06, -0.07}, Point3d{}}) {
+            RandomStream random(7, std::uint64_t(GetParam() * kinds + second));
+            const auto solid = [&](int kind) {
+                shape::Any shape = shape_of_kind(kind, 1, random);
+                if (auto* const hull = std::get_if<shape::ConvexHull>(&shape))
+                    hull->points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+                return shape;
+            };
+            const shape::Any shape = solid(GetParam()), other = solid(second);
+            const certificate::ConvexBody a(shape, make_pose({0, 0, 0})), b(other, make_pose(place));
+            const certificate::DepthBounds depth = certificate::bound_depth(a, b, 1e-6L, 1e6L);
+            EXPECT_GT(depth.lower, 0.1L) << "kinds " << GetParam() << " and " << second;
+            EXPECT_NEAR(double(depth.upper), double(depth.lower), 0.03) << "kinds " << GetParam() << " and " << second;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Certificates, ::testing::Range(0, kinds));
 
 }  // namespace

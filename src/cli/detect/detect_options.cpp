@@ -94,7 +94,7 @@ void add_outcome(Command& command, DetectRequest& request) {
         "--verify", request.verify,
         "check the result without the octree, and collisions by certificates; exit status 6 if it is wrong");
     command.add_flag("--fail-on-collision", request.fail_on_collision,
-                     "exit with status 1 if any pair is found, and with status 2 if an input has no object");
+                     "exit with status 1 if any pair is found, and with status 3 if an input has no object");
     command.add_option("--stats", request.stats, "write statistics of the run as JSON").type_name("FILE");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }

@@ -117,22 +117,69 @@ std::optional<Face> make_face(const Vector& a, const Vector& b, const Vector& c)
     return face.distance > 0 ? std::optional(face) : std::nullopt;
 }
 
-/// Returns the faces of a tetrahedron; none if the origin is not certainly inside.
-std::vector<Face> faces_of(const std::vector<Difference>& corners) {
-    std::array<Vector, 4> p;
-    for (std::size_t i = 0; i < 4; ++i) p[i] = corners[i].point();
-    if (dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0) std::swap(p[1], p[2]);
+bool is_equal(const Vector& a, const Vector& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+using Corners = std::array<Vector, 3>;
+
+/// Returns the triangles of a closed surface as faces that the origin is behind; none if the origin is not certainly inside.
+std::vector<Face> faces_of(const std::vector<Corners>& triangles) {
     std::vector<Face> faces;
-    for (const auto& [a, b, c] : {std::array{p[0], p[1], p[2]}, std::array{p[0], p[2], p[3]},
-                                  std::array{p[0], p[3], p[1]}, std::array{p[1], p[3], p[2]}}) {
-        const auto face = make_face(a, b, c);
+    for (const auto& [a, b, c] : triangles) {
+        auto face = make_face(a, b, c);
+        if (!face) face = make_face(a, c, b);
         if (!face) return {};
         faces.push_back(*face);
     }
-    return faces;
+    // If the origin is outside, two neighbours are turned differently, and pass along their edge in the same direction.
+    std::vector<std::array<Vector, 2>> edges;
+    for (const Face& face : faces) {
+        for (std::size_t i = 0; i < 3; ++i) edges.push_back({face.corners[i], face.corners[(i + 1) % 3]});
+    }
+    const auto is_turned_alike = [&](const std::array<Vector, 2>& edge) {
+        return std::ranges::count_if(edges, [&](const auto& other) {
+                   return is_equal(other[0], edge[1]) && is_equal(other[1], edge[0]);
+               }) == 1;
+    };
+    return std::ranges::all_of(edges, is_turned_alike) ? faces : std::vector<Face>();
 }
 
-bool is_equal(const Vector& a, const Vector& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+/// Returns the surface of a double pyramid.
+std::vector<Corners> double_pyramid(const Corners& equator, const std::array<Vector, 2>& tips) {
+    std::vector<Corners> triangles;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (const Vector& tip : tips) triangles.push_back({equator[i], equator[(i + 1) % 3], tip});
+    }
+    return triangles;
+}
+
+/// Returns a unit vector perpendicular to `direction`.
+Vector perpendicular_to(const Vector& direction) {
+    const Vector axis = std::abs(direction.x) > std::abs(direction.y) ? Vector{0, 1, 0} : Vector{1, 0, 0};
+    const Vector across = cross(direction, axis);
+    return across * (1 / length(across));
+}
+
+/// Returns a polytope within the difference of the bodies, around the origin; none if there is none for certain. `simplex`: points of the
+/// difference with the origin in their hull. Bodies with symmetries yield flat ones.
+std::vector<Face> polytope_around(const ConvexBody& first, const ConvexBody& second,
+                                  const std::vector<Difference>& simplex) {
+    const auto farthest = [&](const Vector& direction) {
+        return first.support(direction) - second.support(-direction);
+    };
+    std::vector<Vector> p;
+    for (const Difference& corner : simplex) p.push_back(corner.point());
+    if (p.size() == 4)
+        return faces_of({{p[0], p[1], p[2]}, {p[0], p[2], p[3]}, {p[0], p[3], p[1]}, {p[1], p[3], p[2]}});
+    if (p.size() == 3) {
+        const Vector normal = cross(p[1] - p[0], p[2] - p[0]);
+        return faces_of(double_pyramid({p[0], p[1], p[2]}, {farthest(normal), farthest(-normal)}));
+    }
+    if (p.size() < 2) return {};
+    const Vector along = p[1] - p[0], u = perpendicular_to(along), v = cross(along * (1 / length(along)), u);
+    const Real half = 0.5L, height = std::sqrt(3.0L) / 2;
+    return faces_of(double_pyramid({farthest(u), farthest(v * height - u * half), farthest(-(v * height) - u * half)},
+                                   {p[0], p[1]}));
+}
 
 /// Replaces the faces that `point` sees by faces from their outline to `point`. Returns false if rounding prevents that.
 bool expand(std::vector<Face>& faces, const Vector& point) {
@@ -160,10 +207,9 @@ struct Goal {
     Real accuracy, enough;
 };
 
-/// Bounds the distance. `around` gets the corners of a tetrahedron around the origin of the difference, if the search ends with one: then
-/// the bodies overlap.
+/// Bounds the distance. `simplex` gets the points of the difference whose hull is nearest to the origin, or contains it.
 DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, const Goal& goal,
-                              std::vector<Difference>& around) {
+                              std::vector<Difference>& simplex) {
     // Not along an axis, because symmetric bodies would yield flat simplices.
     Weighted nearest{{farthest_difference(first, second, {-0.48L, 0.6L, 0.64L})}, {1}};
     DistanceBounds bounds;
@@ -186,10 +232,10 @@ DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second,
         if (nearest.corners.size() == 4) {  // the origin is inside
             bounds.points = {nearest.mean(&Difference::first), nearest.mean(&Difference::second)};
             bounds.upper = length(bounds.points[0] - bounds.points[1]);
-            around = nearest.corners;
             break;
         }
     }
+    simplex = nearest.corners;
     return bounds;
 }
 
@@ -200,18 +246,17 @@ Real gap_along(const ConvexBody& first, const ConvexBody& second, const Vector& 
 }
 
 DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real far_enough) {
-    std::vector<Difference> around;
-    return bound_distance(first, second, {accuracy, far_enough}, around);
+    std::vector<Difference> simplex;
+    return bound_distance(first, second, {accuracy, far_enough}, simplex);
 }
 
 namespace {
 
 DepthBounds bound_depth_once(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real deep_enough) {
     DepthBounds bounds{0, std::numeric_limits<Real>::infinity()};
-    std::vector<Difference> around;
-    (void)bound_distance(first, second, {0, 0}, around);
-    if (around.empty()) return bounds;
-    std::vector<Face> faces = faces_of(around);
+    std::vector<Difference> simplex;
+    (void)bound_distance(first, second, {0, 0}, simplex);
+    std::vector<Face> faces = polytope_around(first, second, simplex);
     for (int step = 0; step < max_expansions && !faces.empty(); ++step) {
         const Face nearest = *std::ranges::min_element(faces, {}, &Face::distance);
         bounds.lower = std::max(bounds.lower, nearest.distance);
@@ -228,7 +273,7 @@ DepthBounds bound_depth_once(const ConvexBody& first, const ConvexBody& second, 
 DepthBounds bound_depth(const ConvexBody& first, const ConvexBody& second, Real accuracy, Real deep_enough) {
     const DepthBounds bounds = bound_depth_once(first, second, accuracy, deep_enough);
     if (bounds.lower > 0) return bounds;
-    // No tetrahedron was found, for example because symmetric bodies have an edge through the origin. A motion by `size` changes the depth
+    // No polytope was found, for example because rounding hides on which side of a face the origin is. A motion by `size` changes the depth
     // by at most `size`.
     const Real size = std::min(first.radius(), second.radius()) * 1e-7L;
     const Vector by = Vector{0.6L, 0.64L, 0.48L} * size;
