@@ -1,5 +1,9 @@
 #include "service/server/server_context.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include <grpcpp/server_context.h>
 
 #include <algorithm>
@@ -31,6 +35,13 @@ void check_limit(const char* name, std::uint64_t asked, std::uint64_t allowed) {
                      "a job of " + std::to_string(asked) + " " + name + "; at most " + std::to_string(allowed));
 }
 
+/// Returns memory that is free to the system. glibc keeps up to 64 MiB of it for each of several heaps.
+void give_back_free_memory() {
+#ifdef __GLIBC__
+    ::malloc_trim(0);
+#endif
+}
+
 }  // namespace
 
 ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog::logger> logger)
@@ -52,7 +63,10 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
                       log)),
       attached("", "", 0),
       scheduler({given.engine, given.small_engine ? given.small_engine : given.engine, given.renewable_engines,
-                 [this] { array_pool.clear(); }},
+                 [this] {
+                     array_pool.clear();
+                     give_back_free_memory();
+                 }},
                 given.engine_widths) {
     if (!state) return;
     detached = std::make_shared<DetachedJobs>(*this);

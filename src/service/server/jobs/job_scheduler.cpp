@@ -74,14 +74,15 @@ void JobScheduler::run_next(Lane& lane, KeptEngine& engine, const std::shared_pt
 
 /// Gives back memory, because the thread of `engine` had nothing to do for a while.
 void JobScheduler::renew_idle(Lane& lane, KeptEngine& engine) {
-    if (&lane == &large_ && on_idle_) on_idle_();
-    if (!renewable_) return;
+    const bool is_large = &lane == &large_;
     try {
-        engine.renew();
-        if (&lane != &large_) return;
-        for (Instant& instant : instant_) instant.engine->renew();
+        if (renewable_) engine.renew();
+        for (Instant& instant : instant_) {
+            if (renewable_ && is_large) instant.engine->renew();
+        }
     } catch (const std::exception&) {  // no memory or no thread for a new engine: the old one stays
     }
+    if (is_large && on_idle_) on_idle_();
 }
 
 /// Returns the job whose turn it is among those that can run, or jobs.end(). Candidates are the first attached and the first detached
