@@ -98,7 +98,7 @@ void add_generate(Command& program, Action& action) {
     command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
     command.footer(kinds_text());
     command.callback([request, &action] {
-        if (request->output != "-" && !io::is_npy_file(request->output)) {
+        if (request->output != "-" && io::ending_of(request->output) != ".npy") {
             throw Error(ErrorCode::usage,
                         fmt::format("--output: the name of '{}' does not end in .npy", request->output));
         }

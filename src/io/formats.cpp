@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
 
+#include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
 #include "io/files/stream_input.hpp"
+#include "io/formats/content_marks.hpp"
+#include "io/formats/format_table.hpp"
 #include "io/meshes/mesh_reader.hpp"
-#include "io/meshes/plain/plain_scene.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
@@ -28,60 +31,150 @@ namespace {
 /// Returns whether a path says nothing about the format: standard input or output ("-"), a stream, or a descriptor under /dev or
 /// /proc.
 bool lacks_name(const std::string& path) {
-    return is_stream(path) || path == "/dev/stdin" || path.starts_with("/dev/fd/") ||
-           path.starts_with("/proc/self/fd/");
+    if (path == "/dev/stdin" || path.starts_with("/dev/fd/") || path.starts_with("/proc/self/fd/")) return true;
+    return is_stream(path) && format_with_ending(ending_of(path)) == nullptr;
 }
 
-/// Returns the format by the first bytes: .npy begins with a mark, JSON with a brace or bracket; everything else is CSV.
-SceneFormat format_of_content(const std::string& path) {
+FileHead read_head(const std::string& path) {
     const InputFile file(path);
-    std::string begin(std::size_t(std::min<std::uint64_t>(file.size(), 64)), '\0');
-    file.read(0, std::as_writable_bytes(std::span(begin)));
-    if (begin.starts_with("\x93NUMPY")) return SceneFormat::npy;
-    const std::size_t first = begin.find_first_not_of(" \t\r\n");
-    const bool json = first != std::string::npos && (begin[first] == '{' || begin[first] == '[');
-    return json ? SceneFormat::json : SceneFormat::csv;
+    FileHead head{std::string(std::size_t(std::min<std::uint64_t>(file.size(), FileHead::head_bytes)), '\0'),
+                  file.size()};
+    file.read(0, std::as_writable_bytes(std::span(head.bytes)));
+    return head;
+}
+
+/// Returns the beginning of a file; nothing if it cannot be read, and for streams with an ending, which are read once by their reader.
+/// Throws: Error{io_failed} for a stream without an ending.
+std::optional<FileHead> head_of(const std::string& path) {
+    if (lacks_name(path)) return read_head(path);
+    if (is_stream(path)) return std::nullopt;
+    try {
+        return read_head(path);
+    } catch (const Error&) {
+        return std::nullopt;  // the reader gives the reason
+    }
+}
+
+const FileFormat* format_of_mark(std::string_view mark) {
+    if (mark.empty()) return nullptr;
+    if (const FileFormat* const format = format_with_ending(mark)) return format;
+    const auto formats = file_formats();
+    const auto found =
+        std::find_if(formats.begin(), formats.end(), [&](const FileFormat& format) { return format.name == mark; });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+/// Returns whether the first line of a text has six numbers, or six words as a header.
+bool looks_like_csv(const FileHead& head) {
+    const std::string text = text_of(head);
+    const std::string line = text.substr(0, text.find('\n'));
+    return std::count(line.begin(), line.end(), ',') == 5 && std::all_of(line.begin(), line.end(), [](char c) {
+               return c == '\t' || c == '\r' || (c >= ' ' && c < 127);
+           });
+}
+
+bool can_assimp_read([[maybe_unused]] const std::string& ending) {
+#ifdef OCTOPAIR_WITH_MESHES
+    return is_mesh_ending(ending);
+#else
+    return false;
+#endif
+}
+
+/// Returns the ending of a format without a mark, for a file whose name says nothing; empty if the content does not show one.
+std::string guessed_ending(const FileHead& head, bool stream) {
+    const std::string text = text_of(head);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    const bool json = first != std::string::npos && (text[first] == '{' || text[first] == '[');
+    if (json && (stream || text.find("\"objects\"") != std::string::npos)) return ".json";
+    return stream || looks_like_csv(head) ? ".csv" : "";
+}
+
+KnownFormat known_by_head(const std::string& path, const std::optional<FileHead>& head) {
+    const bool unnamed = lacks_name(path);
+    const std::string ending = unnamed ? "" : ending_of(path);
+    const FileFormat* const named = format_with_ending(ending);
+    const FileFormat* const marked = head ? format_of_mark(marked_format(*head)) : nullptr;
+    const bool agree =
+        marked == nullptr || marked == named ||
+        (named != nullptr && named->reader == FormatReader::nobody && marked->reader == FormatReader::nobody);
+    if (!agree) return {marked, std::string(marked->first_ending()), true, true, named != nullptr};
+    if (named != nullptr || !head || can_assimp_read(ending)) return {named, ending, marked != nullptr, false, false};
+    const std::string guess = guessed_ending(*head, unnamed);
+    if (guess.empty()) return {nullptr, ending, false, false, false};
+    return {format_with_ending(guess), guess, false, true, false};
+}
+
+/// Throws: Error{bad_input} if the file is wrapped.
+void refuse_wrapped(const std::string& path, const FileHead& head) {
+    const std::string wrapping = wrapping_of(head, ending_of(path));
+    if (!wrapping.empty()) refuse(path, wrapping);
 }
 
 }  // namespace
 
+KnownFormat known_format(const std::string& path) { return known_by_head(path, head_of(path)); }
+
+void check_readable(const std::string& path) {
+    const std::optional<FileHead> head = head_of(path);
+    if (!head) return;
+    const KnownFormat known = known_by_head(path, head);
+    if (head->size == 0 && known.ending != ".csv") refuse(path, "is empty");
+    refuse_wrapped(path, *head);
+    if (known.format == nullptr || known.format->reader != FormatReader::nobody) return;
+    if (!known.marked && can_assimp_read(known.ending)) return;
+    refuse(path, fmt::format("is {}, which octopair does not read; {}", known.format->name, known.format->remedy));
+}
+
+void check_not_wrapped(const std::string& path) {
+    if (const std::optional<FileHead> head = head_of(path)) refuse_wrapped(path, *head);
+}
+
+std::string name_warning(const std::string& path) {
+    const KnownFormat known = known_format(path);
+    if (!known.misnamed) return {};
+    const FileFormat* const named = format_with_ending(ending_of(path));
+    return fmt::format("{}: is {}, not {} as its name says; it is read as {}", path, known.format->name, named->name,
+                       known.format->name);
+}
+
 SceneFormat scene_format(const std::string& path) {
-    const std::string ending = ending_of(path);
-    if (ending == ".npy") return SceneFormat::npy;
-    if (ending == ".csv") return SceneFormat::csv;
-    if (ending == ".json") return SceneFormat::json;
+    const KnownFormat known = known_format(path);
+    if (known.ending == ".npy") return SceneFormat::npy;
+    if (known.ending == ".csv") return SceneFormat::csv;
+    if (known.ending == ".json") return SceneFormat::json;
 #ifdef OCTOPAIR_WITH_MESHES
-    if (is_mesh_ending(ending)) return SceneFormat::mesh;
+    const bool refused = known.format != nullptr && known.format->reader == FormatReader::nobody;
+    if (known.format != nullptr && !refused) return SceneFormat::mesh;
+    if (!(refused && known.marked) && can_assimp_read(known.ending)) return SceneFormat::mesh;
 #endif
-    return lacks_name(path) ? format_of_content(path) : SceneFormat::unknown;
+    return SceneFormat::unknown;
 }
 
 bool is_imported_file(const std::string& path) {
-#ifdef OCTOPAIR_WITH_MESHES
-    return is_mesh_file(path) && !is_plain_ending(ending_of(path));
-#else
-    return is_mesh_file(path);
-#endif
+    if (!is_mesh_file(path)) return false;
+    const FileFormat* const format = known_format(path).format;
+    return format == nullptr || format->reader != FormatReader::octopair;
 }
 
 bool is_ifc_file(const std::string& path) {
-    const std::string ending = ending_of(path);
+    const std::string ending = format_ending(path);
     return ending == ".ifc" || ending == ".ifczip";
 }
 
 SceneSpace format_space(const std::string& path) {
-    const std::string ending = ending_of(path);
+    const std::string ending = format_ending(path);
     const auto is_any_of = [&](std::initializer_list<std::string_view> endings) {
         return std::find(endings.begin(), endings.end(), ending) != endings.end();
     };
-    if (is_ifc_file(path)) return {UpAxis::z, "m"};  // Assimp scales to metres
+    if (is_any_of({".ifc", ".ifczip"})) return {UpAxis::z, "m"};  // Assimp scales to metres
     // Assimp turns and scales COLLADA to the axes and the unit that glTF and X3D prescribe.
     if (is_any_of({".gltf", ".glb", ".dae", ".zae", ".x3d", ".x3db", ".wrl"})) return {UpAxis::y, "m"};
     return {};
 }
 
 bool may_name_files(const std::string& path) {
-    const std::string ending = ending_of(path);
+    const std::string ending = format_ending(path);
     return ending == ".gltf" || ending == ".json";
 }
 

@@ -1,5 +1,9 @@
-// File formats by the ending of the file's name. Case is ignored. No other file maps endings to formats. Streams without an ending,
-// such as "-" and /dev/fd/63, have the format that their first bytes show: .npy, JSON or CSV. Results go there as CSV.
+// File formats: the one place that decides which format a file has and who reads it.
+//
+// - A mark at the beginning of the content decides first, the ending of the name second (formats/content_marks.hpp). Case is ignored.
+// - formats/format_table.cpp lists all formats.
+// - Streams without an ending, such as "-" and /dev/fd/63, and files with an unknown ending have the format that their content shows.
+// - Results have the format of their ending. Without one they are CSV.
 //
 // Scenes    scene_reader.cpp calls the reader of a format.
 // Results   results/pair_writer.cpp, collision_writer.cpp and event_writer.cpp write the formats.
@@ -10,22 +14,49 @@
 
 namespace octopair::io {
 
+struct FileFormat;
+
 /// Returns the ending of a file's name in lower case, with its dot; empty if the name has no ending.
 std::string ending_of(const std::string& path);
 
-/// Format of a scene file. Assimp reads `mesh` files. Readers refuse `unknown` files.
+/// The format of a scene file.
+struct KnownFormat {
+    const FileFormat* format = nullptr;  ///< null: not in the table
+    /// Ending that names the format: that of the file, or if the content shows another format, the first ending of that one.
+    std::string ending;
+    bool marked = false;      ///< true if the content has the mark of the format
+    bool by_content = false;  ///< true if the content decided, against the name or without one
+    bool misnamed = false;    ///< true if the ending of the name is that of another format
+};
+
+/// Returns the format of a scene file. Reads its beginning, if possible; of a stream with an ending, and of a file that cannot be opened,
+/// it judges only the name.
+/// Throws: Error{io_failed} for a stream without an ending.
+KnownFormat known_format(const std::string& path);
+inline std::string format_ending(const std::string& path) { return known_format(path).ending; }
+
+/// Throws: Error{bad_input} with a remedy if the content of a file is not the scene itself: an empty file (other than CSV), a compressed
+/// file, a pointer of Git LFS, an HTML page, text in UTF-16 or UTF-32 that its reader does not know, and a format that nobody reads.
+void check_readable(const std::string& path);
+/// Throws: Error{bad_input} as check_readable() for a file that is no scene, such as rules. An empty file is accepted.
+void check_not_wrapped(const std::string& path);
+
+/// Returns a warning "FILE: ..." about a file whose name has the ending of another format, or an empty text.
+std::string name_warning(const std::string& path);
+
+/// Format of a scene file by its reader. Meshes are `mesh`, whoever reads them. Readers refuse `unknown` files.
 enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 
 /// Format of a file of pairs or collisions. `npy` is an array of pairs; the others are rows of text.
 enum class ResultFormat : std::uint8_t { npy, csv, jsonl };
 
-/// Returns the format of a scene file. Returns `mesh` only if this build reads mesh files. Reads streams without an ending.
-/// Throws: Error{io_failed} for such a stream.
+/// Returns the format of a scene file. Returns `mesh` only if this build reads mesh files.
+/// Throws: what known_format() throws.
 SceneFormat scene_format(const std::string& path);
 inline bool is_npy_file(const std::string& path) { return scene_format(path) == SceneFormat::npy; }
 inline bool is_json_file(const std::string& path) { return scene_format(path) == SceneFormat::json; }
 inline bool is_mesh_file(const std::string& path) { return scene_format(path) == SceneFormat::mesh; }
-/// Returns whether Assimp reads a file: all mesh files but those of simple formats (meshes/plain/).
+/// Returns whether Assimp reads a file: all mesh files but those that octopair's own readers read.
 bool is_imported_file(const std::string& path);
 
 /// The axis of a scene that points up.

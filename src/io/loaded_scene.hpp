@@ -34,7 +34,8 @@ struct LoadedScene {
     SceneSpace space;                ///< axes and unit of the coordinates
     /// What a user should know about the files, for example that something was not read. Each is one line "FILE: ...".
     std::vector<std::string> warnings;
-    std::optional<LoadedShapes> shapes;        ///< set if SceneContent::shapes is set and the file has shapes
+    std::vector<std::string> not_read;   ///< what readers left out, for example "IFCSPACE (3)"; for `octopair info`
+    std::optional<LoadedShapes> shapes;  ///< set if SceneContent::shapes is set and the file has shapes
     std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects
 
     bool lacks_boxes() const {

@@ -109,9 +109,7 @@ LoadedScene read_shapes(const std::string& path, const SceneContent& content, co
 #endif
 }
 
-}  // namespace
-
-LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
+LoadedScene read_known(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
     switch (scene_format(path)) {
         case SceneFormat::npy:
             return read_npy_scene(path, stop);
@@ -121,7 +119,7 @@ LoadedScene read_scene(const std::string& path, const SceneContent& content, con
             return read_shapes(path, content, stop);
         case SceneFormat::mesh:
 #ifdef OCTOPAIR_WITH_MESHES
-            if (is_plain_ending(ending_of(path))) return read_plain_scene(path, content, stop);
+            if (is_plain_ending(format_ending(path))) return read_plain_scene(path, content, stop);
             return read_mesh_scene(path, content);
 #endif
         case SceneFormat::unknown:
@@ -134,6 +132,15 @@ LoadedScene read_scene(const std::string& path, const SceneContent& content, con
         path,
         "unknown file type; the name must end in .npy, .csv or .json (this build of octopair cannot read mesh files)");
 #endif
+}
+
+}  // namespace
+
+LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
+    check_readable(path);
+    LoadedScene scene = read_known(path, content, stop);
+    if (std::string warning = name_warning(path); !warning.empty()) scene.warnings.push_back(std::move(warning));
+    return scene;
 }
 
 void check_frame_counts(std::span<const FrameCount> counts, std::span<const std::string> paths) {
@@ -155,6 +162,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     for (const LoadedScene& scene : scenes) {
         joined.largest_rounded = std::max(joined.largest_rounded, scene.largest_rounded);
         joined.warnings.insert(joined.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+        joined.not_read.insert(joined.not_read.end(), scene.not_read.begin(), scene.not_read.end());
     }
     joined.space = joint_space(scenes);
     joined.frames = scenes.front().frames;
@@ -191,6 +199,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
 
 std::optional<NpyFrames> open_frames(const std::string& path) {
     if (!is_npy_file(path)) return std::nullopt;
+    check_readable(path);
     return NpyFrames::open(path);
 }
 

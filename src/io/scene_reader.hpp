@@ -1,4 +1,4 @@
-// Reads scene files of any format. The ending of the name gives the format: .npy, .csv, .json, or a mesh file of Assimp.
+// Reads scene files of any format (formats.hpp).
 #pragma once
 
 #include <functional>

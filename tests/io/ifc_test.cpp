@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/meshes/ifc_elements.hpp"
+#include "io/meshes/ifc_schema.hpp"
 #include "io/meshes/mesh_reader.hpp"
 #include "io/temporary.hpp"
 
@@ -185,6 +186,62 @@ TEST(Ifc, NamesAreFoundInTheText) {
           "#1=IFCWALL(" + id + ",$,'');", "#1=IFCWALL(" + id + ",$,'n", std::string("#1=IFCWALL('short',$,'n');")}) {
         EXPECT_EQ(found(none), "0") << none;
     }
+}
+
+TEST(Ifc, ElementsWithABodyAreCounted) {
+    const io::IfcText text = io::read_ifc_text(model);
+    EXPECT_EQ(text.bodies,
+              (io::IfcTexts{{"0000000000000000000006", "IFCWALL"}, {"0000000000000000000007", "IFCBEAM"}}));
+    EXPECT_TRUE(text.left_out.empty());
+    std::string axis = model;
+    axis.replace(axis.find("'Body'"), 6, "'Axis'");
+    EXPECT_TRUE(io::read_ifc_text(axis).bodies.empty());
+    std::string space = model;
+    space.replace(space.find("IFCWALL("), 8, "IFCSPACE(");
+    EXPECT_EQ(io::read_ifc_text(space).bodies.size(), 1u);
+    EXPECT_EQ(io::read_ifc_text(space).left_out.at("IFCSPACE"), 1u);
+}
+
+TEST(Ifc, LostElementsAreAWarning) {
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("model.ifc");
+    const auto warnings = [&](const std::string& content) {
+        write_file(path, content);
+        return io::read_mesh_scene(path, {io::MeshObjects::node}).warnings;
+    };
+    EXPECT_TRUE(warnings(model).empty());
+    std::string lost = model;  // the wall has a definition of its own, with a solid that Assimp leaves out
+    lost.replace(lost.find("#7,#18,$);"), 10, "#7,#58,$);");
+    lost.insert(lost.find("#20="),
+                "#56=IFCBLOCK(#4,1.,1.,1.);\n"
+                "#57=IFCSHAPEREPRESENTATION(#5,'Body','CSG',(#56));\n#58=IFCPRODUCTDEFINITIONSHAPE($,$,(#57));\n");
+    EXPECT_EQ(
+        warnings(lost),
+        std::vector{path + ": 1 of 2 elements with a body were not read, for example IFCWALL 0000000000000000000006 "
+                           "('T_\u00fcr'); Assimp knows only IFC2x3: export the model as IFC2x3, glTF or OBJ"});
+}
+
+TEST(Ifc, TheSchemaIsARemedy) {
+    EXPECT_EQ(io::ifc_schema(model), "IFC2X3");
+    EXPECT_EQ(io::ifc_schema("FILE_SCHEMA (\n('IFC4X3_ADD2'));"), "IFC4X3_ADD2");
+    EXPECT_EQ(io::ifc_schema(""), "");
+    EXPECT_EQ(io::ifc_schema("FILE_SCHEMA(('" + std::string(50, 'a') + "'))"), "");
+    EXPECT_EQ(io::types_beyond_ifc2x3(
+                  "#1=IFCTRIANGULATEDFACESET(#2);#3= IFCTRIANGULATEDFACESET(#2);#4=IFCTEXT('IFCADVANCEDBREP(');"),
+              "2 IfcTriangulatedFaceSet");
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("a.ifc");
+    const auto remedy = [&](const std::string& content) {
+        write_file(path, content);
+        return io::ifc_remedy(path);
+    };
+    EXPECT_EQ(remedy("ISO-10303-21;FILE_SCHEMA(('IFC4'));#1=IFCADVANCEDBREP(#2);"),
+              "the file is IFC4 and has 1 IfcAdvancedBrep; Assimp knows only the types of IFC2x3. Export the model as "
+              "IFC2x3, glTF or OBJ");
+    EXPECT_EQ(remedy("FILE_SCHEMA(('IFC4'));"),
+              "the file is IFC4, and Assimp knows only IFC2x3. Export the model as IFC2x3, glTF or OBJ");
+    EXPECT_EQ(remedy(model), "export the model anew as IFC2x3, or as glTF or OBJ");
+    EXPECT_EQ(io::ifc_remedy(directory.file("a.3ds")), "");
 }
 
 }  // namespace

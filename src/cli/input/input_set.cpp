@@ -72,6 +72,7 @@ class PartFile {
 public:
     PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
         if (io::is_npy_file(path)) {
+            io::check_readable(path);
             npy_.emplace(path);
         } else {
             whole_ = read_part(path, content, stop);

@@ -23,6 +23,7 @@
 #include "cli/input/scene_transfer.hpp"
 #include "io/files/failure.hpp"
 #include "io/formats.hpp"
+#include "io/meshes/ifc_schema.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -111,6 +112,17 @@ void limit_memory([[maybe_unused]] const std::string& path) {
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, base + factor * size);
     ::setrlimit(RLIMIT_AS, &limit);
 #endif
+}
+
+/// Returns what to say of a file whose importer crashed, and what to do.
+std::string crash_text([[maybe_unused]] const std::string& path, const std::string& cause) {
+    std::string remedy = "export the model as glTF, OBJ, STL or PLY from the program that wrote it";
+#ifdef OCTOPAIR_WITH_MESHES
+    const std::string known = io::ifc_remedy(path);
+    if (!known.empty()) remedy = known;
+#endif
+    const char* const what = io::is_json_file(path) ? "a mesh file that it names" : "it";
+    return fmt::format("Assimp failed to read {} ({}); {}", what, cause, remedy);
 }
 
 [[noreturn]] void run_child(pid_t parent, int pipe, const std::string& path, const io::SceneContent& content) {
@@ -207,8 +219,7 @@ private:
         if (signal == SIGKILL) {
             throw Error(ErrorCode::resource_limit, fmt::format("{}: the process that read it was killed", path_));
         }
-        io::refuse(path_,
-                   fmt::format("its importer crashed ({})", signal != 0 ? ::strsignal(signal) : "it ended early"));
+        io::refuse(path_, crash_text(path_, signal != 0 ? ::strsignal(signal) : "it ended early"));
     }
 
     std::string path_;

@@ -18,7 +18,7 @@ concept Some = std::same_as<std::remove_const_t<Any>, T>;
 
 auto members(Some<io::LoadedScene> auto& scene) {
     return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.largest_rounded, scene.names,
-                    scene.details, scene.space, scene.warnings, scene.shapes, scene.triangles);
+                    scene.details, scene.space, scene.warnings, scene.not_read, scene.shapes, scene.triangles);
 }
 auto members(Some<io::LoadedShapes> auto& loaded) {
     return std::tie(loaded.shapes, loaded.geometry, loaded.poses, loaded.parents, loaded.end_poses, loaded.padding,

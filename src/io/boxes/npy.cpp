@@ -11,6 +11,7 @@
 #include "io/files/failure.hpp"
 #include "io/files/file_mapping.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats.hpp"
 
 namespace octopair::io {
 
@@ -131,6 +132,7 @@ void NpyFrames::read(std::uint64_t frame, std::span<Box3d> boxes, const std::sto
 }
 
 Buffer<double> read_padding(const std::string& path, const std::stop_token& stop) {
+    check_not_wrapped(path);
     const InputFile file(path);
     const NpyHeader header = read_header(file);
     refuse_integers(header, path);

@@ -8,6 +8,7 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 
 namespace octopair::io {
@@ -74,6 +75,7 @@ ExclusionRules parse_exclusion_rules(std::string_view text, std::string_view fil
 }
 
 ExclusionRules read_exclusion_rules(const std::string& path) {
+    check_not_wrapped(path);
     const InputFile file(path);
     constexpr std::uint64_t max_bytes = 1 << 30;
     if (file.size() > max_bytes) refuse(path, "the file is larger than 1 GiB, the maximum for exclusion rules");

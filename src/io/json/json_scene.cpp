@@ -13,6 +13,7 @@
 #include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #ifdef OCTOPAIR_WITH_MESHES
+#include "io/meshes/import_warnings.hpp"
 #include "io/meshes/mesh_file.hpp"
 #include "io/meshes/mesh_shapes.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
@@ -171,9 +172,12 @@ private:
 shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& scene,
                       [[maybe_unused]] const std::stop_token& stop) {
 #ifdef OCTOPAIR_WITH_MESHES
-    if (is_plain_ending(ending_of(path))) return read_plain_mesh(path, scene, stop);
+    check_readable(path);
+    if (std::string warning = name_warning(path); !warning.empty()) scene.warnings.push_back(std::move(warning));
+    if (is_plain_ending(format_ending(path))) return read_plain_mesh(path, scene, stop);
     const MeshFile file(path, true);
     scene.largest_rounded = std::max(scene.largest_rounded, file.largest_rounded());
+    for (std::string& warning : import_warnings(file)) scene.warnings.push_back(std::move(warning));
     file.crossing_faces().append_warning(path, scene.warnings);
     return whole_mesh_of(file);
 #else

@@ -1,11 +1,15 @@
 #include "io/meshes/ifc_elements.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <unordered_set>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "io/object_details.hpp"
 
@@ -176,6 +180,8 @@ public:
         return has_attributes && ends ? std::optional(instance) : std::nullopt;
     }
 
+    std::string_view rest() const { return rest_; }
+
 private:
     std::string_view rest_;
 };
@@ -202,6 +208,40 @@ double largest_of(std::string_view point) {
     return largest;
 }
 
+/// Returns the attribute at a position, counted from 0, without white space around it; empty if there is none.
+std::string_view attribute_at(const StepInstance& instance, int position) {
+    StepReader reader(instance.attributes);
+    int depth = 0;
+    while (position > 0) {
+        if (!reader.find(",()")) return {};
+        if (reader.take('(')) {
+            ++depth;
+        } else if (reader.take(')')) {
+            --depth;
+        } else if (reader.take(',')) {
+            position -= depth == 0;
+        }
+    }
+    reader.skip(space);
+    const std::string_view rest = reader.rest();
+    return rest.substr(0, rest.find_first_of(",) \t\r\n"));
+}
+
+/// Returns whether a representation is a body, by its identifier.
+bool is_body(std::string_view identifier) {
+    constexpr std::string_view others =
+        " Axis Axis2D Axis3D FootPrint Box Annotation Profile Reference CoG Clearance Lighting PlanSymbol2D "
+        "PlanSymbol3D SurveyPoints ";
+    return others.find(fmt::format(" {} ", identifier)) == std::string_view::npos;
+}
+
+/// Returns whether Assimp leaves out elements of a type, although they have a body.
+bool is_left_out(const StepInstance& instance) {
+    constexpr std::array<std::string_view, 6> types = {"IFCOPENING",        "IFCSPACE", "IFCVOIDINGFEATURE",
+                                                       "IFCVIRTUALELEMENT", "IFCGRID",  "IFCANNOTATION"};
+    return std::any_of(types.begin(), types.end(), [&](std::string_view type) { return instance.is(type, true); });
+}
+
 /// Collects the facts of an IfcText.
 class IfcTextReader {
 public:
@@ -211,6 +251,7 @@ public:
             if (const auto instance = reader.next()) add(*instance);
         }
         add_materials();
+        add_bodies();
         text_.complete = step.rfind("END-ISO-10303-21") != std::string_view::npos;
         return std::move(text_);
     }
@@ -221,12 +262,23 @@ private:
         std::vector<std::string_view> references;  // of a layer, a set or a list
     };
 
+    struct Product {
+        std::string_view id, type, shape;  // shape: the number of its definition
+    };
+
     void add(const StepInstance& instance) {
         constexpr std::size_t id_length = 22;
         StepReader reader(instance.attributes);
         if (instance.is("IFCCARTESIANPOINT")) {
             text_.largest_coordinate = std::max(text_.largest_coordinate, largest_of(instance.attributes));
             return;
+        }
+        if (instance.is("IFCPRODUCTDEFINITIONSHAPE")) {
+            definitions_.emplace(instance.number, references_of(instance.attributes));
+        } else if (instance.is("IFCSHAPEREPRESENTATION")) {
+            const std::string_view identifier = attribute_at(instance, 1);
+            if (is_body(identifier.substr(identifier.starts_with('\'') ? 1 : 0, identifier.size() - 2)))
+                body_representations_.insert(instance.number);
         }
         const auto first = reader.take_text();
         if (instance.is("IFCMATERIAL")) {
@@ -238,6 +290,8 @@ private:
         }
         if (!first || first->size() != id_length) return;
         ids_.emplace(instance.number, *first);
+        const std::string_view shape = attribute_at(instance, 6);
+        if (shape.starts_with('#')) add_product({*first, instance.type, shape.substr(1)}, is_left_out(instance));
         if (!reader.take(',')) return;
         reader.skip(" \t\r\n#$*");
         reader.skip(digits);
@@ -256,6 +310,25 @@ private:
                 const auto id = ids_.find(element);
                 if (id != ids_.end() && !joined.empty()) text_.materials.emplace(id->second, joined);
             }
+        }
+    }
+
+    void add_product(const Product& product, bool left_out) {
+        if (left_out) {
+            ++text_.left_out[std::string(product.type)];
+        } else {
+            products_.push_back(product);
+        }
+    }
+
+    void add_bodies() {
+        for (const Product& product : products_) {
+            const auto definition = definitions_.find(product.shape);
+            if (definition == definitions_.end()) continue;
+            const auto& shapes = definition->second;
+            if (std::any_of(shapes.begin(), shapes.end(),
+                            [&](std::string_view shape) { return body_representations_.contains(shape); }))
+                text_.bodies.emplace(product.id, product.type);
         }
     }
 
@@ -279,6 +352,9 @@ private:
     }
 
     IfcText text_;
+    std::vector<Product> products_;
+    std::unordered_map<std::string_view, std::vector<std::string_view>> definitions_;  // representations, by number
+    std::unordered_set<std::string_view> body_representations_;                        // by number
     std::unordered_map<std::string_view, std::string_view> ids_;  // GlobalIds, by the numbers of instances
     std::unordered_map<std::string_view, Material> materials_;    // by the numbers of instances
     std::unordered_map<std::string_view, std::string>

@@ -1,7 +1,6 @@
 #include "io/meshes/mesh_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <exception>
 #include <new>
@@ -13,7 +12,11 @@
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats.hpp"
+#include "io/formats/content_marks.hpp"
+#include "io/meshes/dxf_content.hpp"
 #include "io/meshes/faces/face_cutter.hpp"
+#include "io/meshes/ifc_schema.hpp"
+#include "io/meshes/root_pose.hpp"
 
 namespace octopair::io {
 
@@ -32,37 +35,6 @@ void rethrow_bad_alloc(const Assimp::Importer& importer) {
     }
 }
 
-/// Returns the float64 that is nearest to the shortest decimal number that rounds to `value`. For example 0.001f gives 0.001.
-double shortest_decimal(float value) {
-    const std::string text = fmt::format("{}", value);
-    double decimal = double(value);
-    (void)std::from_chars(text.data(), text.data() + text.size(), decimal);
-    return decimal;
-}
-
-BoundedPose pose_of(const aiNode& node) {
-    const aiMatrix4x4& m = node.mTransformation;
-    return BoundedPose({{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}});
-}
-
-/// Returns the pose of the root node. Assimp turns IFC models from z up to y up; here they keep their z.
-BoundedPose root_pose(const aiNode& root, const std::string& path) {
-    if (!is_ifc_file(path)) return pose_of(root);
-    const aiMatrix4x4& m = root.mTransformation;
-    std::array<std::array<double, 4>, 3> rows = {
-        {{m.a1, m.a2, m.a3, m.a4}, {-m.c1, -m.c2, -m.c3, -m.c4}, {m.b1, m.b2, m.b3, m.b4}}};
-    // Assimp's quarter turn is in float32: it leaves 4e-8 where 0 belongs, and 0.001 is off by 5e-11.
-    double largest = 0;
-    for (const auto& row : rows) largest = std::max({largest, std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});
-    for (auto& row : rows) {
-        for (std::size_t column = 0; column < 3; ++column) {
-            if (std::abs(row[column]) < 1e-7 * largest) row[column] = 0;
-            row[column] = shortest_decimal(float(row[column]));
-        }
-    }
-    return BoundedPose(rows);
-}
-
 /// Returns the largest coordinate of a node's translation, without its sign.
 double translation_of(const aiNode& node) {
     const aiMatrix4x4& m = node.mTransformation;
@@ -78,35 +50,60 @@ double scale_of(const BoundedPose& pose) {
     return largest;
 }
 
+Buffer<char> read_bytes(const InputFile& file) {
+    Buffer<char> bytes{std::size_t(file.size())};
+    file.read(0, std::as_writable_bytes(bytes.span()));
+    return bytes;
+}
+
 /// Returns what the text of an IFC file says, if it is not compressed.
 /// Throws: Error{bad_input} if the file is cut. Assimp would read the part that is there.
-IfcText read_text_of_ifc(const std::string& path) {
-    if (ending_of(path) != ".ifc") return {};
-    const InputFile file(path);
-    Buffer<char> text{std::size_t(file.size())};
-    file.read(0, std::as_writable_bytes(text.span()));
+IfcText read_text_of_ifc(const std::string& path, const KnownFormat& known) {
+    if (known.ending != ".ifc") return {};
+    const Buffer<char> text = read_bytes(InputFile(path));
     IfcText read = read_ifc_text({text.data(), text.size()});
     if (!read.complete) refuse(path, "is cut: an IFC file ends with END-ISO-10303-21;");
     return read;
 }
 
+/// Returns what Assimp leaves out of a DXF file.
+/// Throws: Error{bad_input} if Assimp would place something wrongly.
+std::vector<std::string> check_dxf(const std::string& path, const KnownFormat& known) {
+    if (known.ending != ".dxf") return {};
+    const Buffer<char> text = read_bytes(InputFile(path));
+    DxfFaults faults = find_dxf_faults({text.data(), text.size()});
+    if (faults.wrong.empty()) return std::move(faults.lost);
+    refuse(path,
+           fmt::format("{}, which Assimp places wrongly; explode the blocks (EXPLODE), or export glTF, OBJ or STL",
+                       faults.wrong));
+}
+
+/// Returns what to do about a file that Assimp refuses, as far as its content shows.
+std::string remedy_for(const InputFile& file) {
+    std::string begin(std::size_t(std::min<std::uint64_t>(file.size(), 4)), '\0');
+    file.read(0, std::as_writable_bytes(std::span(begin)));
+    const std::string_view encoding = wide_encoding(begin);
+    if (!encoding.empty()) return fmt::format("it is text in {}; save it as UTF-8", encoding);
+    return ifc_remedy(file.path());
+}
+
 /// Lists the instances of a scene.
 class InstanceSearch {
 public:
-    InstanceSearch(const aiScene& scene, const std::string& path, const IfcTexts& ifc_names)
-        : scene_(scene), path_(path), ifc_names_(ifc_names) {}
+    InstanceSearch(const aiScene& scene, const MeshFile& file) : scene_(scene), file_(file) {}
 
     /// Returns all nodes with meshes, in pre-order. The traversal has an explicit stack, because the file controls the depth.
     std::vector<MeshInstance> find() const {
         std::vector<MeshInstance> instances;
         std::vector<MeshInstance> waiting;
         const aiNode& root = *scene_.mRootNode;
-        waiting.push_back({&root, name_of(root, 0), root_pose(root, path_), translation_of(root)});
+        waiting.push_back({&root, name_of(root, 0), root_pose(root, file_.known()), translation_of(root)});
         while (!waiting.empty()) {
             const MeshInstance at = std::move(waiting.back());
             waiting.pop_back();
             for (unsigned i = at.node->mNumChildren; i-- > 0;) {
-                if (at.node->mChildren[i] == nullptr) refuse(path_, "has a node that its importer could not read");
+                if (at.node->mChildren[i] == nullptr)
+                    refuse(file_.path(), "has a node that its importer could not read");
                 const aiNode& child = *at.node->mChildren[i];
                 waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child),
                                    at.translations + scale_of(at.pose) * translation_of(child)});
@@ -120,25 +117,29 @@ private:
     std::string name_of(const aiNode& node, unsigned position) const {
         if (node.mName.length == 0) return fmt::format("#{}", position);
         std::string name = node.mName.C_Str();
-        if (ifc_names_.empty()) return name;
+        const IfcTexts& ifc_names = file_.ifc_text().names;
+        if (ifc_names.empty()) return name;
         const auto element = parse_ifc_element(name);
         if (!element) return name;
-        const auto known = ifc_names_.find(std::string(element->id));
-        if (known == ifc_names_.end()) return name;
+        const auto known = ifc_names.find(std::string(element->id));
+        if (known == ifc_names.end()) return name;
         return fmt::format("{}_{}_{}", element->type, known->second, element->id);
     }
 
     const aiScene& scene_;
-    const std::string& path_;
-    const IfcTexts& ifc_names_;
+    const MeshFile& file_;
 };
 
 }  // namespace
 
 MeshFile::MeshFile(const std::string& path, bool triangles)
-    : path_(path), ifc_text_(read_text_of_ifc(path)), scene_(&import(path)) {
+    : path_(path),
+      known_(known_format(path)),
+      ifc_text_(read_text_of_ifc(path, known_)),
+      left_out_(check_dxf(path, known_)),
+      scene_(&import(path)) {
     used_vertices_.resize(scene_->mNumMeshes);
-    instances_ = InstanceSearch(*scene_, path, ifc_text_.names).find();
+    instances_ = InstanceSearch(*scene_, *this).find();
     std::erase_if(instances_, [this](const MeshInstance& instance) { return !has_vertices(instance); });
     cut_meshes_.resize(scene_->mNumMeshes);
     if (triangles) cut_faces();
@@ -146,15 +147,22 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
 
 const aiScene& MeshFile::import(const std::string& path) {
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
-    const aiScene* scene = importer_.ReadFile(path, 0u);
+    // Assimp chooses its reader by the ending. A file with another ending, or none, is read from memory, with the right one.
+    const aiScene* scene = known_.by_content ? import_bytes(read_bytes(readable)) : importer_.ReadFile(path, 0u);
     readable.check_unchanged();
     if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
     rethrow_bad_alloc(importer_);
     std::string words = importer_.GetErrorString();
     std::replace_if(
         words.begin(), words.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
-    refuse(path,
-           words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words));
+    std::string reason =
+        words.empty() ? std::string("Assimp finds no scene in it") : fmt::format("Assimp refuses it: {}", words);
+    if (const std::string remedy = remedy_for(readable); !remedy.empty()) reason += "; " + remedy;
+    refuse(path, reason);
+}
+
+const aiScene* MeshFile::import_bytes(const Buffer<char>& bytes) {
+    return importer_.ReadFileFromMemory(bytes.data(), bytes.size(), 0u, known_.ending.c_str() + 1);
 }
 
 /// Cuts the faces of all meshes that have faces with more than three corners.
@@ -184,7 +192,7 @@ void MeshFile::cut_faces() {
 }
 
 double MeshFile::largest_rounded() const {
-    double largest = scale_of(root_pose(*scene_->mRootNode, path_)) * ifc_text_.largest_coordinate;
+    double largest = scale_of(root_pose(*scene_->mRootNode, known_)) * ifc_text_.largest_coordinate;
     for (const MeshInstance& instance : instances_) {
         double vertex_size = 0;
         for (const unsigned number : instance.meshes()) {

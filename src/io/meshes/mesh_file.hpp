@@ -15,6 +15,8 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include "base/memory.hpp"
+#include "io/formats.hpp"
 #include "io/meshes/bounded_pose.hpp"
 #include "io/meshes/faces/crossing_faces.hpp"
 #include "io/meshes/ifc_elements.hpp"
@@ -35,8 +37,8 @@ struct MeshInstance {
 class MeshFile {
 public:
     /// Reads a file. With `triangles`, faces with more than three corners are cut into triangles (FaceCutter).
-    /// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, and for a vertex index out of range;
-    /// Error{io_failed}.
+    /// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, for a vertex index out of range, and if Assimp would place
+    /// something wrongly (dxf_content.hpp); Error{io_failed}.
     MeshFile(const std::string& path, bool triangles);
 
     /// Returns all instances, in pre-order of their nodes.
@@ -45,6 +47,9 @@ public:
     double largest_rounded() const;
     const aiScene& scene() const { return *scene_; }
     const std::string& path() const { return path_; }
+    const KnownFormat& known() const { return known_; }
+    /// Returns what Assimp left out, as far as the text of the file shows, for example "entities of type 3DSOLID (2)".
+    const std::vector<std::string>& left_out() const { return left_out_; }
     /// Returns what the text of an IFC file says; nothing for other files, and for compressed ones.
     const IfcText& ifc_text() const { return ifc_text_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
@@ -80,12 +85,15 @@ private:
     using Corners = std::array<unsigned, 3>;
 
     const aiScene& import(const std::string& path);
+    const aiScene* import_bytes(const Buffer<char>& bytes);
     void cut_faces();
     bool has_vertices(const MeshInstance& instance);
     std::vector<unsigned> find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const;
 
     std::string path_;
+    KnownFormat known_;
     IfcText ifc_text_;
+    std::vector<std::string> left_out_;
     Assimp::Importer importer_;
     const aiScene* scene_;
     std::vector<MeshInstance> instances_;

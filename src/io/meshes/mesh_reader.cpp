@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/meshes/import_warnings.hpp"
 #include "io/meshes/mesh_file.hpp"
 #include "io/meshes/mesh_shapes.hpp"
 #include "io/meshes/node_details.hpp"
@@ -100,7 +101,9 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
         if (content.shapes) scene.shapes = shapes_of(file);
     }
     scene.largest_rounded = file.largest_rounded();
-    scene.space = format_space(path);
+    scene.space = space_of(file);
+    scene.warnings = import_warnings(file);
+    scene.not_read = left_out_of(file);
     file.crossing_faces().append_warning(path, scene.warnings);
     return scene;
 }

@@ -10,8 +10,7 @@
 // With SceneContent::shapes, nodes have shapes besides boxes. Triangles then have float64 corners and the names of their
 // nodes, and no boxes.
 //
-// A format that Assimp imports needs no change here. Any other format needs an entry in io/formats.cpp, and a reader that
-// io/scene_reader.cpp calls.
+// A format needs an entry in io/formats/format_table.cpp. One that Assimp does not read needs a reader that io/scene_reader.cpp calls, too.
 //
 // Vertices keep the order of Assimp and are not merged. Bones and animations are ignored.
 #pragma once

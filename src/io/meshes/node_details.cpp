@@ -85,9 +85,10 @@ void add_node_details(const aiNode& node, DetailTexts& texts) {
 ObjectDetails details_of(const MeshFile& file) {
     ObjectDetails details;
     DetailsBuilder builder(details);
+    const bool is_ifc = is_ifc_file(file.path());
     for (const MeshInstance& instance : file.instances()) {
         DetailTexts texts;
-        if (is_ifc_file(file.path())) {
+        if (is_ifc) {
             add_ifc_details(*instance.node, file.ifc_text(), texts);
         } else {
             add_node_details(*instance.node, texts);

@@ -9,6 +9,7 @@
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/json/json_text.hpp"
 
@@ -66,6 +67,7 @@ ObjectId id_of(std::uint32_t object, const ObjectNames& names) {
 }  // namespace
 
 Baseline::Baseline(const std::string& path, bool join, const std::stop_token& stop) : join_(join) {
+    check_not_wrapped(path);
     const InputFile file(path);
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()), stop);

@@ -32,7 +32,7 @@ std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_toke
     if (input.size() == 0) refuse(path, "is empty");
     Buffer<char> bytes{std::size_t(input.size())};
     input.read(0, std::as_writable_bytes(bytes.span()), stop);
-    return parse({{bytes.data(), bytes.size()}, path, stop, progress}, ending_of(path));
+    return parse({{bytes.data(), bytes.size()}, path, stop, progress}, format_ending(path));
 }
 
 /// Keeps the vertices that faces use, in the order of the file; all of them if there are no faces.
@@ -54,7 +54,7 @@ void keep_used_vertices(PlainMesh& mesh) {
 std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const std::string& path) {
     const std::string file = std::filesystem::path(path).filename().string();
     // The only solid of an STL file often has the name of the program that wrote it.
-    const bool by_file = meshes.size() == 1 && (meshes[0].name.empty() || ending_of(path) == ".stl");
+    const bool by_file = meshes.size() == 1 && (meshes[0].name.empty() || format_ending(path) == ".stl");
     if (by_file) return {file};
     std::vector<std::string> names;
     for (std::size_t i = 0; i < meshes.size(); ++i) {

@@ -1,0 +1,35 @@
+// Recognises the content of a file by its first bytes.
+//
+// - A mark is unmistakable: no valid file of another format begins with it. So a file with a mark has that format, whatever its name says.
+// - A file is wrapped if its content is not the model itself: compressed, a pointer of Git LFS, an HTML page.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace octopair::io {
+
+/// The first bytes of a file.
+struct FileHead {
+    std::string bytes;       ///< at most head_bytes
+    std::uint64_t size = 0;  ///< of the whole file
+
+    static constexpr std::size_t head_bytes = 4096;
+};
+
+/// Returns the beginning of a file as text for a search: UTF-8, without byte order mark. UTF-16 is narrowed to ASCII.
+std::string text_of(const FileHead& head);
+
+/// Returns the encoding that a byte order mark shows, "UTF-16" or "UTF-32", or an empty text.
+std::string_view wide_encoding(std::string_view bytes);
+
+/// Returns the first ending of the format whose mark a file has (format_table.hpp), or for formats without an ending their name. Empty:
+/// no mark is known.
+std::string_view marked_format(const FileHead& head);
+
+/// Returns what a wrapped file is and what to do, for example "is compressed with gzip; ...". Empty: the file is not wrapped. Formats that
+/// are wrapped themselves, such as 3MF (ZIP), are not. `ending`: that of the file's name, in lower case.
+std::string wrapping_of(const FileHead& head, std::string_view ending);
+
+}  // namespace octopair::io

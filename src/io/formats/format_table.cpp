@@ -1,0 +1,135 @@
+#include "io/formats/format_table.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace octopair::io {
+
+namespace {
+
+using enum AxisChange;
+
+constexpr FileFormat own(std::string_view name, std::string_view endings) {
+    return {name, endings, FormatReader::octopair, none, {}};
+}
+
+constexpr FileFormat imported(std::string_view name, std::string_view endings, AxisChange axes = none) {
+    return {name, endings, FormatReader::assimp, axes, {}};
+}
+
+constexpr FileFormat refused(std::string_view name, std::string_view endings, std::string_view remedy) {
+    return {name, endings, FormatReader::nobody, none, remedy};
+}
+
+constexpr std::string_view from_cad = "export it as glTF, OBJ or STL from a CAD program, for example FreeCAD",
+                           from_its_program = "export it as glTF, OBJ or STL from the program that wrote it",
+                           from_scene = "convert it to glTF, for example with Blender",
+                           points = "octopair needs surfaces or boxes; save boxes or spheres as .npy or .csv",
+                           no_model = "give octopair a model, or boxes as .npy or .csv";
+
+// The axis changes are those of Assimp 5.2. tests/io/assimp_axes_test.cpp has a block in these formats.
+constexpr auto formats = std::to_array<FileFormat>({
+    own("NumPy", ".npy"),
+    own("CSV", ".csv"),
+    own("JSON", ".json"),
+    own("OBJ", ".obj"),
+    own("STL", ".stl"),
+    own("PLY", ".ply"),
+    own("OFF", ".off"),
+    imported("glTF", ".gltf"),
+    imported("binary glTF", ".glb"),
+    {"IFC", ".ifc .ifczip", FormatReader::checked_assimp, turned, {}},
+    imported("3D GameStudio terrain", ".hmp"),
+    imported("3DS", ".3ds .prj", turned),
+    imported("3MF", ".3mf"),
+    imported("AC3D", ".ac .ac3d .acc"),
+    imported("AMF", ".amf"),
+    imported("ASE", ".ase .ask", turned),
+    imported("Assimp binary", ".assbin"),
+    imported("Blender", ".blend"),
+    imported("Blitz3D", ".b3d", mirrored),
+    imported("BSP", ".bsp .pk3"),
+    imported("BVH", ".bvh"),
+    imported("COLLADA", ".dae .zae"),
+    imported("CharacterStudio motion", ".csm"),
+    imported("DXF", ".dxf", turned),
+    imported("DirectX", ".x", mirrored),
+    imported("FBX", ".fbx"),
+    imported("IQM", ".iqm", turned),
+    imported("Irrlicht", ".irr .irrmesh"),
+    imported("LightWave", ".lwo .lxo", mirrored),
+    imported("LightWave scene", ".lws .mot", mirrored),
+    imported("MD2", ".md2", turned),
+    imported("MD3", ".md3", turned),
+    imported("MD5", ".md5mesh .md5anim .md5camera", turned),
+    imported("MDC", ".mdc", turned),
+    imported("MDL", ".mdl", turned),
+    imported("MilkShape", ".ms3d"),
+    imported("NFF", ".nff .enff"),
+    imported("Nendo", ".ndo"),
+    imported("Ogre", ".mesh .mesh.xml"),
+    imported("OpenGEX", ".ogex"),
+    imported("PMX", ".pmx", mirrored),
+    imported("Quick3D", ".q3o .q3s"),
+    imported("Silo", ".sib"),
+    imported("Terragen", ".ter"),
+    imported("Unreal", ".3d .uc", mirrored),
+    imported("Valve SMD", ".smd .vta"),
+    imported("X3D", ".x3d .x3db"),
+    imported("XGL", ".xgl .zgl"),
+    imported("raw triangles", ".raw"),
+    imported("trueSpace", ".cob .scn"),
+    refused("3ds Max", ".max", from_its_program),
+    refused("ACIS", ".sat .sab", from_cad),
+    refused("Alembic", ".abc", from_scene),
+    refused("binary DXF", "", "save it as text (ASCII DXF), or export glTF, OBJ or STL"),
+    refused("CATIA", ".catpart .catproduct", from_its_program),
+    refused("Cinema 4D", ".c4d", from_its_program),
+    refused("DWG", ".dwg", from_its_program),
+    refused("E57", ".e57", points),
+    refused("FreeCAD", ".fcstd", from_its_program),
+    refused("ifcXML", ".ifcxml", "export it as IFC2x3 in STEP form (.ifc), or as glTF or OBJ"),
+    refused("IGES", ".igs .iges", from_cad),
+    refused("Inventor", ".ipt .iam", from_its_program),
+    refused("JPEG", ".jpg .jpeg", no_model),
+    refused("JT", ".jt", from_cad),
+    refused("LAS", ".las .laz", points),
+    refused("Maya", ".ma .mb", from_its_program),
+    refused("Microsoft compound document", "", from_its_program),
+    refused("NPZ", ".npz", "save its array as .npy with numpy.save"),
+    refused("Navisworks", ".nwd .nwc .nwf", from_its_program),
+    refused("PCD", ".pcd", points),
+    refused("PDF", ".pdf", no_model),
+    refused("PNG", ".png", no_model),
+    refused("Parasolid", ".x_t .x_b .xmt_txt", from_cad),
+    refused("Revit", ".rvt .rfa", "export it as IFC2x3, glTF or OBJ"),
+    refused("Rhino", ".3dm", from_its_program),
+    refused("STEP", ".step .stp .p21", from_cad),
+    refused("SketchUp", ".skp", from_its_program),
+    refused("SolidWorks", ".sldprt .sldasm", from_its_program),
+    refused("USD", ".usd .usda .usdc .usdz", from_scene),
+    refused("VRML", ".wrl .vrml", "convert it to X3D or glTF, for example with Blender"),
+    refused("VTK", ".vtk .vtp .vtu", "save it as STL, PLY or OBJ, for example with ParaView"),
+});
+
+}  // namespace
+
+bool FileFormat::has_ending(std::string_view ending) const {
+    if (ending.empty()) return false;
+    for (std::string_view rest = endings; !rest.empty();) {
+        const std::size_t end = std::min(rest.find(' '), rest.size());
+        if (rest.substr(0, end) == ending) return true;
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return false;
+}
+
+std::span<const FileFormat> file_formats() { return formats; }
+
+const FileFormat* format_with_ending(std::string_view ending) {
+    const auto found = std::find_if(formats.begin(), formats.end(),
+                                    [&](const FileFormat& format) { return format.has_ending(ending); });
+    return found == formats.end() ? nullptr : &*found;
+}
+
+}  // namespace octopair::io
