@@ -1,10 +1,13 @@
-// octopair info: prints version, build, engines and instruction set.
+// octopair info: prints version, build, engines and instruction set, or what files hold.
 #include <fmt/format.h>
 
+#include <memory>
 #include <thread>
 
+#include "cli/command/interrupt.hpp"
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/engine_choice.hpp"
+#include "cli/file_info.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/output_stream.hpp"
 #include "octopair/version.hpp"
@@ -44,6 +47,15 @@ constexpr const char* servers = ", server (ADDRESS)";
 constexpr const char* servers = "";
 #endif
 
+int run_file_info(const std::vector<std::string>& paths) {
+    const Interrupt interrupt;
+    const std::string text = describe_files(paths, interrupt.token());
+    io::StandardOutput out({});
+    out.write(text);
+    out.commit();
+    return 0;
+}
+
 int run_info() {
     io::StandardOutput out({});
     out.write(fmt::format("version          {}\n", OCTOPAIR_VERSION));
@@ -60,9 +72,13 @@ int run_info() {
 }  // namespace
 
 void add_info(Command& program, Action& action) {
-    program.add_subcommand("info", "print version, build, engines and instruction set").callback([&action] {
-        action = run_info;
-    });
+    Command command = program.add_subcommand("info", "print version, build and engines, or what files hold");
+    const auto paths = std::make_shared<std::vector<std::string>>();
+    command.add_option(
+        "INPUT", *paths,
+        "files to read: print format, unit, axes, objects, triangles, open meshes, what was not read, warnings");
+    command.callback(
+        [&action, paths] { action = [paths] { return paths->empty() ? run_info() : run_file_info(*paths); }; });
 }
 
 }  // namespace octopair::cli

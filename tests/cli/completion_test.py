@@ -113,7 +113,8 @@ def cases_of(program, subcommand):
         yield f"{subcommand} --seed 1 ", kinds
     elif positional in ("INPUT", "FILE"):
         yield f"{subcommand} ", ending()
-        yield f"{subcommand} --quiet ", ending()
+        if "--quiet" in options:
+            yield f"{subcommand} --quiet ", ending()
     elif positional == "ID":
         yield f"{subcommand} ", {JOB}
         yield f"{subcommand} {JOB} -", set(options)
