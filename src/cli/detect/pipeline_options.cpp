@@ -226,6 +226,9 @@ void check_outcome_options(const DetectRequest& request) {
 }  // namespace
 
 void check_pipeline_options(const DetectRequest& request) {
+    const std::optional<std::string> boxes = input_of_boxes(request);
+    if (boxes && request.mesh_objects == io::MeshObjects::triangle)
+        refuse(fmt::format("--objects triangle: {} has only boxes, no triangles", *boxes));
     check_exact_options(request);
     check_outcome_options(request);
     if (!has_filters(request)) return;
@@ -234,9 +237,7 @@ void check_pipeline_options(const DetectRequest& request) {
     if (request.wide_indices) refuse("--index-type uint64: not with " + asked);
     if (request.events) refuse(asked + ": not with --events");
     if (stage_of(request) == Stage::pairs) return;
-    if (const auto input = input_of_boxes(request)) {
-        refuse(fmt::format("{}: {} has only boxes, no shapes; use --stage pairs", asked, *input));
-    }
+    if (boxes) refuse(fmt::format("{}: {} has only boxes, no shapes; use --stage pairs", asked, *boxes));
 }
 
 }  // namespace octopair::cli
