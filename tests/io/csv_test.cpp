@@ -59,19 +59,41 @@ TEST(Csv, NamesTheLine) {
     EXPECT_EQ(csv_refusal("0,0,0,1,1,1e999\n"), "f.csv: line 1: field 6 is outside the range of float64: '1e999'");
     EXPECT_EQ(csv_refusal("0,0,0,1,1,0x10\n"), "f.csv: line 1: field 6 is not a number: '0x10'");
     EXPECT_EQ(csv_refusal("0,0,0,1,1,+-1\n"), "f.csv: line 1: field 6 is not a number: '+-1'");
-    EXPECT_EQ(csv_refusal("0;0;0;1;1;1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
+    const std::string hint = "; separate the numbers with commas, and write them with a point";
+    EXPECT_EQ(csv_refusal("0;0;0;1;1;1\n"), "f.csv: line 1: 1 fields, not 6 numbers" + hint);
+    EXPECT_EQ(csv_refusal("0\t0\t0\t1\t1\t1\n"), "f.csv: line 1: 1 fields, not 6 numbers" + hint);
+    EXPECT_EQ(csv_refusal("0,1;0,2;0,3;1,1;1,2;1\n"), "f.csv: line 1: field 2 is not a number: '1;0'" + hint);
     EXPECT_EQ(csv_refusal("# comment\n0,0,0,1,1,1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
     EXPECT_EQ(csv_refusal(std::string("0,0,0,1,1,\x01\0x\n", 14)), "f.csv: line 1: field 6 is not a number: '??x'");
 }
 
-/// A carriage return elsewhere is a sign of damage, or of lines that end with it alone.
-TEST(Csv, ACarriageReturnOnlyEndsALine) {
+TEST(Csv, ReadsTheSpellingsOfOtherPrograms) {
+    for (const std::string text :
+         {"\"0\",\"0\",\"0\",\"1\",\"1\",\"1.5\"\n", "0.0D0,0d0,0,1.0D+0,1,15D-1\n", "0,0,0,1,1,1.5\r",
+          "\"min x, m\",b,c,d,e,\"f\"\r0,0,0,1,1,1.5\r", "# a,b,c,d,e,f\n\t\"0\", \" 0 \",0,1,1,1.5"}) {
+        const auto boxes = parsed_csv(text);
+        ASSERT_EQ(boxes.size(), 1u) << text;
+        EXPECT_EQ(boxes[0].max[0], 1) << text;
+        EXPECT_EQ(boxes[0].max[2], 1.5) << text;
+    }
+}
+
+TEST(Csv, ACarriageReturnEndsALine) {
     EXPECT_EQ(parsed_csv("0,0,0,1,1,1\r\n\r\n2,2,2,3,3,3\r").size(), 2u);
-    EXPECT_EQ(csv_refusal("0,0,0\r,1,1,1\n"), "f.csv: line 1: field 3 is not a number: '0?'");
-    EXPECT_EQ(csv_refusal("0,0,0,1,\r1,1\n"), "f.csv: line 1: field 5 is not a number: '?1'");
-    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\r\r\n"), "f.csv: line 1: field 6 is not a number: '1?'");
-    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\r2,2,2,3,3,3\r"), "f.csv: line 1: 11 fields, not 6 numbers");
-    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\n\r\r\n"), "f.csv: line 2: 1 fields, not 6 numbers");
+    EXPECT_EQ(parsed_csv("0,0,0,1,1,1\r2,2,2,3,3,3\r\r3,3,3,4,4,4").size(), 3u);
+    EXPECT_EQ(csv_refusal("0,0,0\r,1,1,1\n"), "f.csv: line 1: 3 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal("0,0,0,1,1,1\r0,0,x,1,1,1\r"), "f.csv: line 2: field 3 is not a number: 'x'");
+}
+
+TEST(Csv, TakesNoNumbersForAHeader) {
+    EXPECT_EQ(csv_refusal("0x0,0x0,0x0,0x1,0x1,0x1\n"), "f.csv: line 1: field 1 is not a number: '0x0'");
+    EXPECT_EQ(csv_refusal("'0','0','0','1','1','1'\n"), "f.csv: line 1: field 1 is not a number: ''0''");
+    EXPECT_EQ(csv_refusal("$0,$0,$0,$1,$1,$1\n"), "f.csv: line 1: field 1 is not a number: '$0'");
+    EXPECT_EQ(csv_refusal("1.#INF,b,c,d,e,f\n"), "f.csv: line 1: field 1 is not a number: '1.#INF'");
+    EXPECT_EQ(csv_refusal("a,b,c,d,e,0 m\n"), "f.csv: line 1: field 1 is not a number: 'a'");
+    EXPECT_EQ(csv_refusal(",,,,,\n"), "f.csv: line 1: field 1 is not a number: ''");
+    EXPECT_EQ(csv_refusal("\"0,0,0,1,1,1\"\n"), "f.csv: line 1: 1 fields, not 6 numbers");
+    EXPECT_EQ(parsed_csv("inf,nan,-inf,INF,NaN,Infinity\n").size(), 1u);
 }
 
 TEST(Csv, IgnoresTheLocale) {

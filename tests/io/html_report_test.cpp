@@ -15,7 +15,7 @@ using nlohmann::json;
 
 const std::vector<std::string> reported_names = {"car/wheel", "</script><script>alert('x')</script>", "r\xFFight",
                                                  "alone"};
-const std::vector<Box3d> boxes = {
+const std::vector<Box3d> reported_boxes = {
     {{0, 0, 0}, {1, 1, 1}}, {{0.5, 0, 0}, {2, 1, 1}}, {{0.1, 0, 0}, {1, 1, 1}}, {{9, 9, 9}, {9, 9, 9}}};
 const std::vector<Pair> reported_pairs = {{0, 1}, {1, 2}};
 
@@ -64,7 +64,7 @@ protected:
 
 TEST_F(HtmlReport, HoldsWhatWasWritten) {
     const auto found = reported_findings();
-    io::ReportScene scene{"car.glb", {{{reported_names}, {reported_names}}, true}, std::span(boxes), {}};
+    io::ReportScene scene{"car.glb", {{{reported_names}, {reported_names}}, true}, std::span(reported_boxes), {}};
     scene.space = {io::UpAxis::y, "m"};
     const std::string text = page(scene, {reported_pairs, found, {}});
     EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,1,4,null,null,0.5,null,1,0,[0.75,0.5,0.5],1,0.75,2],"
@@ -85,7 +85,7 @@ TEST_F(HtmlReport, HoldsWhatWasWritten) {
 }
 
 TEST_F(HtmlReport, NamesAreTextAndNothingIsFetched) {
-    const io::ReportScene scene{"<b>car</b>", {{{reported_names}, {reported_names}}}, std::span(boxes), {}};
+    const io::ReportScene scene{"<b>car</b>", {{{reported_names}, {reported_names}}}, std::span(reported_boxes), {}};
     const std::string text = page(scene, {reported_pairs, {}, {}});
     EXPECT_EQ(count(text, "<script"), 7u);  // six scripts with data, one with the page's code
     EXPECT_EQ(count(text, "</script"), 7u);
@@ -99,7 +99,7 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
     const std::vector<io::Change> changes = {io::Change::same};
     const std::vector<Box3f> others = {{{0, 0, 0}, {1, 1, 1}}, {}, {}, {{0, 0, 0}, {0.5f, 1, 1}}};
     const io::ReportScene scene{
-        "t", {{{reported_names}, {}}, false, false, true}, std::span(boxes), std::span(others), true};
+        "t", {{{reported_names}, {}}, false, false, true}, std::span(reported_boxes), std::span(others), true};
     const std::string text = page(
         scene, {pair, {}, changes},
         {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"depth_kind":"at_least","b_label":"L","contacts":[{}]})"});
@@ -131,7 +131,7 @@ TEST_F(HtmlReport, DetailsAreNumbersOfWords) {
     builder.add({"L", "T", "", "", "", ""});
     builder.add({"T", "", "i", "", "", "<m>"});
     const io::ObjectNames names{reported_names, {}, &details};
-    const std::string text = page({"t", {{names, names}}, std::span(boxes), {}}, {reported_pairs, {}, {}});
+    const std::string text = page({"t", {{names, names}}, std::span(reported_boxes), {}}, {reported_pairs, {}, {}});
     EXPECT_EQ(data_of(text, "words"), json::parse(R"(["","L","T","i","<m>"])"));
     const json objects = data_of(text, "objects");
     EXPECT_EQ(objects[0][0], json::parse("[0,\"car/wheel\",0,0,0,1,1,1,1,2,0,0,0,0]"));

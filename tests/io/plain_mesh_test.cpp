@@ -55,10 +55,14 @@ TEST(PlainMesh, ErrorsNameTheLine) {
     EXPECT_EQ(refused("OFF\n2 0 0\n0 0 0\n"), "m.off: ends where a vertex should follow");
     EXPECT_EQ(refused("OFF\n4000000000 0 0\n"),
               "m.off: line 2: the number of vertices is 4000000000; at most 4 is possible");
-    EXPECT_EQ(refused("4OFF\n"), "m.off: line 1: not a header that octopair reads: OFF, COFF, NOFF, CNOFF or STOFF");
+    EXPECT_EQ(
+        refused("4OFF\n"),
+        "m.off: line 1: the header is '4OFF'; octopair reads OFF with any of ST, C and N before it, that is with three "
+        "coordinates");
     EXPECT_EQ(refused("OFF\n0 1 0\n3 0 0 0\n"), "m.off: line 3: a face has corners, but there are no vertices");
     EXPECT_EQ(refused("OFF\n-1 0 0\n"), "m.off: line 2: the number of vertices is '-1', not a number without sign");
-    EXPECT_EQ(refused("OFF BINARY\n"), "m.off: line 1: octopair reads OFF files as text only");
+    EXPECT_EQ(refused("OFF\n1\n"), "m.off: line 2: the line ends where the number of faces should follow");
+    EXPECT_EQ(refused("OFF BINARY\n"), "m.off: line 1: octopair reads OFF files as text only; save it as text");
     EXPECT_EQ(refused(""), "m.off: ends where the header should follow");
 }
 
@@ -147,13 +151,14 @@ TEST(PlainMesh, PlySaysWhatIsWrong) {
              {"plx\n", "line 1: 'ply' is expected"},
              {"ply\nproperty float x\n", "line 2: a property comes before the first element"},
              {"ply\nelement vertex 1\nproperty real x\n",
-              "line 3: a property has no type of PLY: char, uchar, short, ushort, int, uint, float or double"},
+              "line 3: a property has the type 'real', not one of PLY: char, uchar, short, ushort, int, uint, float or "
+              "double"},
              {"ply\nelement vertex 1\nproperty list float int x\n", "line 3: the length of a list is not an integer"},
              {vertices + "element face 1\nproperty int a\n" + places + "1\n", "its faces have no list vertex_indices"},
              {vertices + faces + places + "3 0 1 3\n", "face 0 has the corner 3, but there are 3 vertices"},
              {vertices + faces + places + "-3 0 1 2\n", "a list has an impossible length"},
              {vertices + "element tristrips 1\nproperty list int int vertex_indices\n" + places + "3 0 1 2\n",
-              "has triangle strips, which octopair does not read"}}) {
+              "has triangle strips, which octopair does not read; save it with faces"}}) {
         EXPECT_EQ(refused(text), "m.ply: " + why);
     }
 }
@@ -186,7 +191,7 @@ TEST(PlainMesh, StlIsTextOrBinary) {
         return error_of(ErrorCode::bad_input, [&] { (void)stl(bytes); });
     };
     EXPECT_EQ(refused(binary_stl("").substr(0, 100)),
-              "m.stl: says that it has 1 triangles, but it is too short for them");
+              "m.stl: says that it has 1 triangles, but 16 bytes (50 each) follow its header; save it again");
     EXPECT_EQ(refused("solid\nfacet normal 0 0 1\nvertex 1 2 3\n"), "m.stl: line 3: 'outer loop' is expected");
     EXPECT_EQ(refused("solid\nfacette\n"), "m.stl: line 2: 'facet' or 'endsolid' is expected");
     EXPECT_EQ(refused("solid\nendsolid\nsolyd\n"), "m.stl: line 3: 'solid' is expected");

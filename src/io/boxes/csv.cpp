@@ -4,11 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/files/line_splitter.hpp"
 
 namespace octopair::io {
 
@@ -16,18 +18,32 @@ namespace {
 
 constexpr std::size_t columns = 6;
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_digit_or_point(char c) { return is_digit(c) || c == '.'; }
+
 std::string_view trimmed(std::string_view text) {
     const std::size_t begin = text.find_first_not_of(" \t");
     if (begin == std::string_view::npos) return {};
     return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
+/// Returns a field without its quotes, if it has any.
+std::string_view unquoted(std::string_view field) {
+    if (field.size() < 2 || field.front() != '"' || field.back() != '"') return field;
+    return trimmed(field.substr(1, field.size() - 2));
+}
+
 enum class Verdict : std::uint8_t { number, beyond_range, no_number };
 
+/// Parses a number. Fortran writes the exponent of a double with D.
 Verdict parse_number(std::string_view field, double& value) {
     if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
-    const char* end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, value);
+    std::string with_e(field);
+    const std::size_t exponent = with_e.find_first_of("dD");
+    if (exponent != std::string::npos && exponent > 0 && is_digit_or_point(with_e[exponent - 1]))
+        with_e[exponent] = 'e';
+    const char* const end = with_e.data() + with_e.size();
+    const auto [stop, error] = std::from_chars(with_e.data(), end, value);
     if (error == std::errc::invalid_argument || stop != end) return Verdict::no_number;
     const bool written_infinite = field.find_first_of("iI") != std::string_view::npos;
     if (error == std::errc::result_out_of_range || (std::isinf(value) && !written_infinite)) {
@@ -36,16 +52,42 @@ Verdict parse_number(std::string_view field, double& value) {
     return Verdict::number;
 }
 
+/// Returns whether a field that is no number was possibly meant as one: its first letter or digit is a digit.
+bool resembles_number(std::string_view field) {
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto first = std::find_if(field.begin(), field.end(), [&](char c) { return is_letter(c) || is_digit(c); });
+    return first != field.end() && is_digit(*first);
+}
+
+/// Returns the length of the first field of a line: up to a comma that is not in quotes.
+std::size_t field_length(std::string_view line) {
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"') quoted = !quoted;
+        if (line[i] == ',' && !quoted) return i;
+    }
+    return line.size();
+}
+
+/// Returns what to do about a line with other separators than commas; empty for other lines.
+std::string_view separator_hint(std::string_view line) {
+    if (line.find_first_of(";\t") == std::string_view::npos) return "";
+    return "; separate the numbers with commas, and write them with a point";
+}
+
 /// Splits a line into six fields. Throws: Error{bad_input} if the line does not have six fields.
 std::array<std::string_view, columns> split(std::string_view line, std::string_view place) {
-    const std::size_t found = std::size_t(std::count(line.begin(), line.end(), ',')) + 1;
-    if (found != columns) refuse(place, fmt::format("{} fields, not {} numbers", found, columns));
     std::array<std::string_view, columns> fields;
-    for (std::string_view& field : fields) {
-        const std::size_t comma = std::min(line.find(','), line.size());
-        field = trimmed(line.substr(0, comma));
-        line.remove_prefix(std::min(comma + 1, line.size()));
+    std::size_t found = 0;
+    std::string_view left = line;
+    for (bool more = true; more; ++found) {
+        const std::size_t length = field_length(left);
+        if (found < columns) fields[found] = unquoted(trimmed(left.substr(0, length)));
+        more = length < left.size();
+        left.remove_prefix(std::min(length + 1, left.size()));
     }
+    if (found != columns)
+        refuse(place, fmt::format("{} fields, not {} numbers{}", found, columns, separator_hint(line)));
     return fields;
 }
 
@@ -65,19 +107,29 @@ bool parse_plain(std::string_view line, Numbers& numbers) {
     return false;
 }
 
+/// Returns whether six fields are a header: some are not empty, and none resembles a number.
+bool is_header(const std::array<std::string_view, columns>& fields, const std::array<Verdict, columns>& verdicts) {
+    bool is_named = false;
+    for (std::size_t i = 0; i < columns; ++i) {
+        if (verdicts[i] != Verdict::no_number || resembles_number(fields[i])) return false;
+        is_named |= !fields[i].empty();
+    }
+    return is_named;
+}
+
 /// Parses a line of any form. Returns false for the header. `place` is the file and the line.
 /// Throws: Error{bad_input}.
 bool parse_any(std::string_view line, bool first, std::string_view place, Numbers& numbers) {
     const auto fields = split(line, place);
     std::array<Verdict, columns> verdicts;
     for (std::size_t i = 0; i < columns; ++i) verdicts[i] = parse_number(fields[i], numbers[i]);
-    const auto is_word = [](Verdict verdict) { return verdict == Verdict::no_number; };
-    if (first && std::all_of(verdicts.begin(), verdicts.end(), is_word)) return false;
+    if (first && is_header(fields, verdicts)) return false;
     for (std::size_t i = 0; i < columns; ++i) {
         if (verdicts[i] == Verdict::number) continue;
-        refuse(place, fmt::format("field {} {}: '{}'", i + 1,
-                                  is_word(verdicts[i]) ? "is not a number" : "is outside the range of float64",
-                                  shown(fields[i])));
+        const bool is_word = verdicts[i] == Verdict::no_number;
+        refuse(place, fmt::format("field {} {}: '{}'{}", i + 1,
+                                  is_word ? "is not a number" : "is outside the range of float64", shown(fields[i]),
+                                  separator_hint(line)));
     }
     return true;
 }
@@ -85,20 +137,15 @@ bool parse_any(std::string_view line, bool first, std::string_view place, Number
 }  // namespace
 
 Buffer<Box3d> parse_csv_boxes(std::string_view text, std::string_view file, const std::stop_token& stop) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
-    Buffer<Box3d> boxes{std::size_t(std::count(text.begin(), text.end(), '\n')) + 1};
+    Buffer<Box3d> boxes{std::size_t(most_lines(text))};
     std::size_t size = 0;
-    for (std::uint64_t number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        if (line.ends_with('\r')) line.remove_suffix(1);
-        if (number % 65536 == 0 && stop.stop_requested()) cancel();
+    for (LineSplitter lines(text); lines.next();) {
+        if (lines.number() % 65536 == 0 && stop.stop_requested()) cancel();
+        const std::string_view line = lines.line();
         if (trimmed(line).empty()) continue;
         Numbers numbers;
         if (!parse_plain(line, numbers) &&
-            !parse_any(line, number == 1, fmt::format("{}: line {}", file, number), numbers)) {
+            !parse_any(line, lines.number() == 1, fmt::format("{}: line {}", file, lines.number()), numbers)) {
             continue;
         }
         boxes[size++] = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};

@@ -1,9 +1,9 @@
 // Reads boxes from .csv files: six float64 numbers per line, separated by commas.
 //
-// - Numbers have the syntax of std::from_chars (independent of the locale), with an optional plus sign.
-// - Spaces and tabs around a number are ignored.
-// - Lines end with '\n' or "\r\n". A '\r' elsewhere is refused. Blank lines are ignored.
-// - The first line is a header if it has six fields and none of them is a number.
+// - Numbers have the syntax of std::from_chars (independent of the locale), with an optional plus sign. The exponent may begin with D.
+// - Fields may be in quotes, as RFC 4180 describes. Spaces and tabs around a number are ignored.
+// - Lines end with LF, CR LF or CR. Blank lines are ignored.
+// - The first line is a header if it has six fields, of which some are not empty and none resembles a number.
 #pragma once
 
 #include <stop_token>

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -185,6 +186,13 @@ shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& sce
 #endif
 }
 
+/// Returns each text once, in order. Objects may name the same file.
+std::vector<std::string> distinct(std::vector<std::string> texts) {
+    std::unordered_set<std::string> seen;
+    std::erase_if(texts, [&](const std::string& text) { return !seen.insert(text).second; });
+    return texts;
+}
+
 }  // namespace
 
 LoadedScene parse_json_scene(std::string_view text, std::string_view file, const MeshLoader& load_mesh,
@@ -198,11 +206,11 @@ LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()), stop);
     const std::filesystem::path directory = std::filesystem::path(path).parent_path();
-    LoadedScene meshes;
+    LoadedScene meshes;  // what the mesh files say, but for their shapes
     const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), meshes, stop); };
     LoadedScene scene = parse_json_scene({text.data(), text.size()}, path, load, stop);
     scene.largest_rounded = meshes.largest_rounded;
-    scene.warnings = std::move(meshes.warnings);
+    scene.warnings = distinct(std::move(meshes.warnings));
     return scene;
 }
 

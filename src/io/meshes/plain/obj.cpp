@@ -1,8 +1,13 @@
-// parse_obj(): the object files of Wavefront. Each object and each group is a mesh. Points and lines are faces with fewer than three
-// corners. Everything else but places, names and materials is ignored.
+// parse_obj(): the object files of Wavefront. Each object and each group of an object is a mesh. Points and lines are faces with fewer
+// than three corners. Everything else but places, names and materials is left out.
+//
+// - An object begins with `o`, a group with `g`. All faces of one object and one group are one mesh, wherever they are in the file.
+// - A new object ends the group. A group without a name, or with that of its object, is the object's own mesh. A group before all
+//   objects is like an object.
+// - A comment is a line that begins with `#`, or the end of a line with places or corners. In names, `#` is a character.
+// - Keywords are small letters. If no line begins with `v`, they may be capitals.
 #include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <map>
 #include <string>
 #include <utility>
@@ -10,78 +15,146 @@
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
+#include "io/meshes/plain/obj_keywords.hpp"
 #include "io/meshes/plain/text_lines.hpp"
 
 namespace octopair::io {
 
 namespace {
 
-/// Returns the text with joined lines: a backslash at the end of a line joins the next.
-std::string with_joined_lines(std::string_view text) {
-    std::string joined(text);
-    for (std::size_t at = joined.find('\\'); at != std::string::npos; at = joined.find('\\', at + 1)) {
-        std::size_t end = at + 1;
-        if (end < joined.size() && joined[end] == '\r') ++end;
-        if (end < joined.size() && joined[end] == '\n')
-            std::fill(joined.begin() + std::ptrdiff_t(at), joined.begin() + std::ptrdiff_t(end) + 1, ' ');
+/// Returns whether a line begins with `v`. In most files it is one of the first lines.
+bool has_small_vertex(std::string_view text) {
+    for (LineSplitter lines(text); lines.next();) {
+        const std::string_view line = lines.line();
+        const std::size_t begin = std::min(line.find_first_not_of(" \t"), line.size());
+        if (line.substr(begin).starts_with("v ") || line.substr(begin).starts_with("v\t")) return true;
     }
-    return joined;
+    return false;
+}
+
+/// Lines of one kind that are not read.
+struct UnreadLines {
+    std::uint64_t count = 0, first = 0;
+    std::string first_word;
+
+    void add(std::uint64_t line, std::string_view word) {
+        if (count++ > 0) return;
+        first = line;
+        first_word = shown(word);
+    }
+    void warn(const FileContent& file, std::string_view what) const {
+        if (count == 0) return;
+        file.warn(fmt::format("{}: {} {} not read, the first is line {} ('{}')", what, count,
+                              count == 1 ? "line is" : "lines are", first, first_word));
+    }
+};
+
+/// A mesh, and the name of the object that it is a group of.
+struct ObjPart {
+    PlainMesh mesh;
+    std::string object;
+};
+
+/// Groups of several objects may have one name. They get the object's name in front.
+void name_equal_groups(std::vector<ObjPart>& parts) {
+    std::map<std::string, std::size_t> uses;
+    for (const ObjPart& part : parts) ++uses[part.mesh.name];
+    for (ObjPart& part : parts) {
+        if (uses[part.mesh.name] > 1 && part.mesh.name != part.object)
+            part.mesh.name = part.object + '/' + part.mesh.name;
+    }
 }
 
 class ObjParser {
 public:
-    explicit ObjParser(const FileContent& file) : file_(file), lines_(file, '#') {}
+    explicit ObjParser(const FileContent& file) : file_(file), lines_(file), capitals_(!has_small_vertex(file.bytes)) {}
 
     std::vector<PlainMesh> parse() {
-        begin_mesh({});
+        begin_part();
+        bool is_empty = true;
         while (lines_.next()) {
-            const std::string_view word = lines_.word();
-            if (word == "v") {
-                if (vertices_.size() == 0xFFFFFFFF) lines_.refuse_line("a file has more than 2^32 - 1 vertices");
-                Point3d& place = vertices_.emplace_back();
-                for (double& at : place) at = lines_.number("a coordinate");
-            } else if (word == "f" || word == "l" || word == "p") {
-                read_face();
-            } else if (word == "usemtl") {
-                material_ = lines_.rest();
-                material_is_new_ = true;
-            } else if (word == "o") {
-                begin_object(std::string(lines_.rest()));
-            } else if (word == "g" && lines_.rest() != group_) {
-                group_ = lines_.rest();
-                begin_mesh(group_);
-            }
+            is_empty = false;
+            if (lines_.begins_with('#')) continue;
+            lines_.join_continued('\\');
+            read_line();
         }
-        std::erase_if(meshes_, [](const PlainMesh& mesh) { return mesh.ends.empty(); });
-        if (meshes_.empty()) {  // points only
-            meshes_.emplace_back().vertices = std::move(vertices_);
-            return std::move(meshes_);
+        if (is_empty) refuse(file_.path, "is empty");
+        if (vertices_.empty() && unknown_.count > 0) {
+            refuse(file_.path,
+                   fmt::format("line {}: '{}' is no keyword of OBJ, and the file has no vertices; if it is of "
+                               "another format, give it the ending of that format",
+                               unknown_.first, unknown_.first_word));
         }
-        give_vertices();
-        return std::move(meshes_);
+        unknown_.warn(file_, "has keywords that OBJ does not have");
+        freeform_.warn(file_, "has free-form curves or surfaces; save them as polygons");
+        calls_.warn(file_, "calls other files");
+        return finish();
     }
 
 private:
-    void begin_mesh(std::string name) {
-        current_ = meshes_.size();
-        material_is_new_ = true;
-        meshes_.emplace_back().name = std::move(name);
+    void read_line() {
+        const std::string_view word = lines_.word();
+        if (word.empty()) return;  // only the mark of a continued line
+        switch (keyword_of(word)) {
+            case ObjKeyword::vertex:
+                return read_vertex();
+            case ObjKeyword::face:
+                return read_face();
+            case ObjKeyword::material:
+                material_ = lines_.rest();
+                material_is_new_ = true;
+                return;
+            case ObjKeyword::object:
+                object_ = lines_.rest();
+                group_.clear();
+                return begin_part();
+            case ObjKeyword::group:
+                group_ = lines_.rest();
+                return begin_part();
+            case ObjKeyword::ignored:
+                return;
+            case ObjKeyword::freeform:
+                return freeform_.add(lines_.line_number(), word);
+            case ObjKeyword::call:
+                return calls_.add(lines_.line_number(), word);
+            case ObjKeyword::unknown:
+                return unknown_.add(lines_.line_number(), word);
+        }
     }
 
-    /// Objects of one name are one mesh.
-    void begin_object(const std::string& name) {
-        const auto [known, fresh] = objects_.try_emplace(name, meshes_.size());
-        if (fresh) return begin_mesh(name);
-        current_ = known->second;
-        material_is_new_ = true;
+    ObjKeyword keyword_of(std::string_view word) const {
+        if (!capitals_) return obj_keyword(word);
+        std::string small(word);
+        for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+        return obj_keyword(small);
+    }
+
+    void read_vertex() {
+        if (vertices_.size() == 0xFFFFFFFF) lines_.refuse_line("a file has more than 2^32 - 1 vertices");
+        lines_.cut('#');
+        Point3d& place = vertices_.emplace_back();
+        for (double& at : place) at = lines_.number("a coordinate");
     }
 
     void read_face() {
-        PlainMesh& mesh = meshes_[current_];
+        lines_.cut('#');
+        PlainMesh& mesh = parts_[current_].mesh;
         if (std::exchange(material_is_new_, false) && !material_.empty()) mesh.materials.insert(material_);
         for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word())
             mesh.corners.push_back(corner_of(word));
         mesh.end_face();
+    }
+
+    /// Continues the mesh of the current group, or makes it.
+    void begin_part() {
+        const std::string& group = group_.empty() ? object_ : group_;
+        const std::string& object = object_.empty() ? group : object_;
+        const auto [known, is_new] = numbers_.try_emplace({object, group}, parts_.size());
+        current_ = known->second;
+        material_is_new_ = true;
+        if (!is_new) return;
+        parts_.push_back({{}, object});
+        parts_.back().mesh.name = group;
     }
 
     /// Returns the vertex of a corner "7", "7/1", "7//3" or "7/1/3". Negative numbers count back from the last vertex.
@@ -98,11 +171,25 @@ private:
         return std::uint32_t(number > 0 ? number - 1 : count + number);
     }
 
+    std::vector<PlainMesh> finish() {
+        std::erase_if(parts_, [](const ObjPart& part) { return part.mesh.ends.empty(); });
+        name_equal_groups(parts_);
+        std::vector<PlainMesh> meshes;
+        meshes.reserve(parts_.size());
+        for (ObjPart& part : parts_) meshes.push_back(std::move(part.mesh));
+        if (meshes.empty()) {  // points only
+            meshes.emplace_back().vertices = std::move(vertices_);
+        } else {
+            give_vertices(meshes);
+        }
+        return meshes;
+    }
+
     /// Gives each mesh the vertices that it uses, in the order of their use.
-    void give_vertices() {
+    void give_vertices(std::vector<PlainMesh>& meshes) const {
         constexpr std::uint32_t unused = ~std::uint32_t(0);
         std::vector<std::uint32_t> numbers(vertices_.size(), unused);
-        for (PlainMesh& mesh : meshes_) {
+        for (PlainMesh& mesh : meshes) {
             std::vector<std::uint32_t> used;
             for (std::uint32_t& corner : mesh.corners) {
                 if (corner >= vertices_.size()) {
@@ -122,21 +209,18 @@ private:
 
     const FileContent& file_;
     TextLines lines_;
+    bool capitals_;  // true if keywords may be capitals
     std::vector<Point3d> vertices_;
-    std::vector<PlainMesh> meshes_;
-    std::size_t current_ = 0;  // mesh that faces are added to
-    std::string group_, material_;
-    bool material_is_new_ = false;                // true if the current mesh may lack the material
-    std::map<std::string, std::size_t> objects_;  // meshes of objects, by name
+    std::vector<ObjPart> parts_;
+    std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // of parts, by object and group
+    std::size_t current_ = 0;                                             // part that faces are added to
+    std::string object_, group_, material_;
+    bool material_is_new_ = false;  // true if the current mesh may lack the material
+    UnreadLines unknown_, freeform_, calls_;
 };
 
 }  // namespace
 
-std::vector<PlainMesh> parse_obj(const FileContent& file) {
-    if (file.bytes.find('\\') == std::string_view::npos) return ObjParser(file).parse();
-    const std::string joined = with_joined_lines(file.bytes);
-    const FileContent without_breaks{joined, file.path, file.stop, file.progress};
-    return ObjParser(without_breaks).parse();
-}
+std::vector<PlainMesh> parse_obj(const FileContent& file) { return ObjParser(file).parse(); }
 
 }  // namespace octopair::io

@@ -10,25 +10,49 @@ namespace octopair::io {
 
 namespace {
 
-/// Reads the header. The first line may also have the counts already. Returns whether it has.
-bool begins_with_counts(TextLines& lines) {
-    TextLines probe = lines;
-    const std::string_view word = probe.word();
-    if (!word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos) return true;
-    (void)lines.word();
-    if (word != "OFF" && word != "COFF" && word != "NOFF" && word != "CNOFF" && word != "STOFF") {
-        lines.refuse_line("not a header that octopair reads: OFF, COFF, NOFF, CNOFF or STOFF");
+bool is_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
+
+/// Returns the length of the keyword at the begin of a word: OFF, after any of ST, C and N. Returns 0 if there is none. A small n is
+/// another keyword, for vertices of any number of coordinates.
+std::size_t keyword_length(std::string_view word) {
+    for (std::size_t at = 0; at < word.size();) {
+        const auto has = [&](std::string_view part) { return equal_in_any_case(word.substr(at, part.size()), part); };
+        if (has("OFF")) return at + 3;
+        if (has("ST")) {
+            at += 2;
+        } else if (has("C") || word[at] == 'N') {
+            ++at;
+        } else {
+            return 0;
+        }
     }
-    if (lines.rest() == "BINARY") lines.refuse_line("octopair reads OFF files as text only");
-    return !lines.rest().empty();
+    return 0;
+}
+
+/// Reads the keyword, which may be missing. Goes to the counts, on the same line or the next.
+void go_to_counts(TextLines& lines) {
+    lines.need("the header");
+    const std::string_view word = lines.peek();
+    if (is_digits(word)) return;
+    const std::size_t length = keyword_length(word);
+    if (length == 0 || !is_digits(word.substr(length))) {
+        lines.refuse_line(
+            fmt::format("the header is '{}'; octopair reads OFF with any of ST, C and N before it, that is "
+                        "with three coordinates",
+                        shown(word)));
+    }
+    lines.skip(length);  // The number of vertices may follow without a space.
+    if (equal_in_any_case(lines.peek(), "BINARY")) {
+        lines.refuse_line("octopair reads OFF files as text only; save it as text");
+    }
+    if (lines.rest().empty()) lines.need("the number of vertices");
 }
 
 }  // namespace
 
 PlainMesh parse_off(const FileContent& file) {
     TextLines lines(file, '#');
-    lines.need("the header");
-    if (!begins_with_counts(lines)) lines.need("the number of vertices");
+    go_to_counts(lines);
     // The shortest lines are "0 0 0" and "0".
     const std::uint64_t most_vertices = std::min<std::uint64_t>(file.bytes.size() / 6 + 1, 0xFFFFFFFF);
     const std::uint64_t vertices = lines.integer("the number of vertices", most_vertices);
@@ -52,6 +76,10 @@ PlainMesh parse_off(const FileContent& file) {
         }
         mesh.end_face();
     }
+    if (lines.next())
+        file.warn(
+            fmt::format("from line {} on it is not read, because the header says that it has {} vertices and {} faces",
+                        lines.line_number(), vertices, faces));
     return mesh;
 }
 

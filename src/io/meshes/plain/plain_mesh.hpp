@@ -1,6 +1,6 @@
 // Readers of simple mesh formats, with the precision of the file: text is read as float64, to the nearest number.
 //
-//   off   OFF, COFF, NOFF, CNOFF and STOFF with three coordinates, as text
+//   off   OFF with any of ST, C and N before it, with three coordinates, as text
 //   obj   polygons of objects and groups
 //   stl   as text or binary
 //   ply   as text or binary, of either byte order; float or double
@@ -47,9 +47,12 @@ struct FileContent {
     const std::stop_token& stop;
     std::function<void(double)> progress =
         {};  ///< called with the part of the file that is parsed, from 0 to 1; or empty
+    std::vector<std::string>* warnings = nullptr;  ///< gets what a user should know about the file; or null
 
     /// Parsers call this from time to time. `offset`: bytes parsed. Throws: Error{cancelled}.
     void checkpoint(std::size_t offset) const;
+    /// Adds the warning "PATH: WHAT".
+    void warn(std::string_view what) const;
 };
 
 // Parse the content of a file. Throw: Error{bad_input} "PATH: line N: ..." or "PATH: ..."; Error{cancelled}.

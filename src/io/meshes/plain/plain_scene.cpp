@@ -26,13 +26,29 @@ std::vector<PlainMesh> parse(const FileContent& file, std::string_view ending) {
     return meshes;
 }
 
+/// Returns the largest coordinate of meshes in float32; 0 for others.
+double largest_rounded(const std::vector<PlainMesh>& meshes) {
+    double largest = 0;
+    for (const PlainMesh& mesh : meshes) {
+        if (!mesh.rounded) continue;
+        for (const Point3d& place : mesh.vertices) {
+            for (const double at : place) largest = std::max(largest, std::abs(at));
+        }
+    }
+    return largest;
+}
+
+/// Reads the meshes of a file. Adds its warnings to those of `scene`, and sets the bound on its rounded coordinates.
 std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_token& stop,
-                                   const std::function<void(double)>& progress) {
+                                   const std::function<void(double)>& progress, LoadedScene& scene) {
     const InputFile input(path);
     if (input.size() == 0) refuse(path, "is empty");
     Buffer<char> bytes{std::size_t(input.size())};
     input.read(0, std::as_writable_bytes(bytes.span()), stop);
-    return parse({{bytes.data(), bytes.size()}, path, stop, progress}, format_ending(path));
+    std::vector<PlainMesh> meshes =
+        parse({{bytes.data(), bytes.size()}, path, stop, progress, &scene.warnings}, format_ending(path));
+    scene.largest_rounded = std::max(scene.largest_rounded, largest_rounded(meshes));
+    return meshes;
 }
 
 /// Keeps the vertices that faces use, in the order of the file; all of them if there are no faces.
@@ -91,23 +107,10 @@ Box3d box_of(const std::vector<Point3d>& places) {
     return box;
 }
 
-/// Returns the largest coordinate of meshes in float32; 0 for others.
-double largest_rounded(const std::vector<PlainMesh>& meshes) {
-    double largest = 0;
-    for (const PlainMesh& mesh : meshes) {
-        if (!mesh.rounded) continue;
-        for (const Point3d& place : mesh.vertices) {
-            for (const double at : place) largest = std::max(largest, std::abs(at));
-        }
-    }
-    return largest;
-}
-
-LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, const SceneContent& content,
-                       const std::stop_token& stop) {
+/// Adds the meshes as objects with boxes. Removes meshes and vertices that are not used.
+void add_objects(std::vector<PlainMesh>& meshes, const std::string& path, LoadedScene& scene) {
     for (PlainMesh& mesh : meshes) keep_used_vertices(mesh);
     std::erase_if(meshes, [](const PlainMesh& mesh) { return mesh.vertices.empty(); });
-    LoadedScene scene;
     scene.objects = meshes.size();
     scene.names = names_of(meshes, path);
     if (meshes.empty()) scene.names.clear();
@@ -116,7 +119,11 @@ LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, c
     std::transform(meshes.begin(), meshes.end(), boxes.data(),
                    [](const PlainMesh& mesh) { return box_of(mesh.vertices); });
     scene.boxes = std::move(boxes);
-    if (!content.shapes) return scene;
+}
+
+/// Adds the shapes of the objects, and warnings about their faces.
+void add_shapes(std::vector<PlainMesh> meshes, const std::string& path, LoadedScene& scene,
+                const std::stop_token& stop) {
     LoadedShapes& loaded = scene.shapes.emplace();
     CrossingFaces crossing;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -127,7 +134,6 @@ LoadedScene node_scene(std::vector<PlainMesh> meshes, const std::string& path, c
     crossing.append_warning(path, scene.warnings);
     loaded.poses.resize(meshes.size());
     loaded.parents.resize(meshes.size(), 0);
-    return scene;
 }
 
 /// Throws: Error{bad_input} if a coordinate is beyond the range of float32.
@@ -180,20 +186,22 @@ void FileContent::checkpoint(std::size_t offset) const {
     if (progress) progress(double(offset) / double(bytes.size()));
 }
 
+void FileContent::warn(std::string_view what) const {
+    if (warnings != nullptr) warnings->push_back(fmt::format("{}: {}", path, what));
+}
+
 bool is_plain_ending(std::string_view ending) {
     return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".ply";
 }
 
 LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
-    std::vector<PlainMesh> meshes = read_meshes(path, stop, content.progress);
-    const double largest = largest_rounded(meshes);
     LoadedScene scene;
+    std::vector<PlainMesh> meshes = read_meshes(path, stop, content.progress, scene);
     if (content.objects == MeshObjects::node) {
-        scene = node_scene(std::move(meshes), path, content, stop);
-        scene.largest_rounded = largest;
+        add_objects(meshes, path, scene);
+        if (content.shapes) add_shapes(std::move(meshes), path, scene, stop);
         return scene;
     }
-    scene.largest_rounded = largest;
     LoadedTriangles loaded = triangles_of(std::move(meshes), path, scene.warnings, stop);
     scene.objects = loaded.triangles.size();
     if (content.shapes) {
@@ -206,8 +214,7 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
 
 shape::Mesh read_plain_mesh(const std::string& path, LoadedScene& scene, const std::stop_token& stop) {
     shape::Mesh whole;
-    std::vector<PlainMesh> meshes = read_meshes(path, stop, {});
-    scene.largest_rounded = std::max(scene.largest_rounded, largest_rounded(meshes));
+    std::vector<PlainMesh> meshes = read_meshes(path, stop, {}, scene);
     const std::vector<std::string> names = names_of(meshes, path);
     CrossingFaces crossing;
     for (std::size_t i = 0; i < meshes.size(); ++i) {

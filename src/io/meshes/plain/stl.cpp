@@ -1,7 +1,13 @@
-// parse_stl(): stereolithography files. A binary file has a header of 80 bytes, the number of triangles, and 50 bytes for each.
+// parse_stl(): stereolithography files.
+//
+// A binary file has a header of 80 bytes, the number of triangles, and 50 bytes for each. Its header may begin with "solid", too.
+//
+// A text file has the statements `solid`, `facet`, `outer loop`, `vertex`, `endloop`, `endfacet` and `endsolid`, in capitals or small
+// letters. Each may begin a line, or follow another. Words after a statement are left out, and so are lines with colours.
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -20,15 +26,38 @@ std::uint32_t little_endian(const char* bytes) {
     return value;
 }
 
-std::uint64_t triangles_of_binary(std::string_view bytes) {
-    return bytes.size() < header_bytes ? 0 : little_endian(bytes.data() + header_bytes - 4);
+/// Returns the number of triangles that the header states. Requires: the header is complete.
+std::uint64_t stated_triangles(std::string_view bytes) { return little_endian(bytes.data() + header_bytes - 4); }
+
+/// Returns whether a file is binary. In a text, the bytes of the number of triangles are characters, so the number is larger than
+/// 151,587,080, and the text would have to be as large. Smaller numbers have bytes that no text has.
+bool is_binary(std::string_view bytes) {
+    const std::string_view header = bytes.substr(0, header_bytes);
+    const bool has_zero = header.find('\0') != std::string_view::npos;
+    return has_zero ||
+           (header.size() == header_bytes && (bytes.size() - header_bytes) / triangle_bytes >= stated_triangles(bytes));
 }
 
-bool is_binary(std::string_view bytes) {
-    if (bytes.size() < header_bytes) return false;
-    // Some binary files begin with "solid", too. Their size tells them apart.
-    const std::uint64_t size = header_bytes + triangle_bytes * triangles_of_binary(bytes);
-    return size == bytes.size() || !bytes.starts_with("solid");
+/// Returns the number of triangles to read: the stated one, or all if it was left 0.
+/// Throws: Error{bad_input} if the file has fewer triangles than it states, or more.
+std::uint64_t triangles_of_binary(const FileContent& file) {
+    if (file.bytes.size() < header_bytes)
+        refuse(file.path, "ends in its header; a binary STL file has one of 84 bytes. Copy or save the file again");
+    const std::uint64_t stated = stated_triangles(file.bytes), bytes = file.bytes.size() - header_bytes;
+    const std::uint64_t complete = bytes / triangle_bytes;
+    if (bytes == stated * triangle_bytes) return stated;
+    const bool has_whole_triangles = bytes % triangle_bytes == 0;
+    if (stated == 0 && has_whole_triangles) {
+        file.warn(fmt::format("its header says that it has 0 triangles; the {} that follow are read", complete));
+        return complete;
+    }
+    if (complete < stated || has_whole_triangles || (stated == 0 && complete > 0)) {
+        refuse(file.path, fmt::format("says that it has {} triangles, but {} follow its header; save it again", stated,
+                                      has_whole_triangles ? fmt::format("{}", complete)
+                                                          : fmt::format("{} bytes (50 each)", bytes)));
+    }
+    file.warn(fmt::format("the {} bytes after its {} triangles are not read", bytes - stated * triangle_bytes, stated));
+    return stated;
 }
 
 void add_corner(PlainMesh& mesh, const Point3d& place) {
@@ -37,10 +66,7 @@ void add_corner(PlainMesh& mesh, const Point3d& place) {
 }
 
 PlainMesh parse_binary(const FileContent& file) {
-    const std::uint64_t triangles = triangles_of_binary(file.bytes);
-    if ((file.bytes.size() - header_bytes) / triangle_bytes < triangles) {
-        refuse(file.path, fmt::format("says that it has {} triangles, but it is too short for them", triangles));
-    }
+    const std::uint64_t triangles = triangles_of_binary(file);
     PlainMesh mesh;
     mesh.rounded = true;
     mesh.vertices.reserve(3 * triangles);
@@ -62,48 +88,94 @@ PlainMesh parse_binary(const FileContent& file) {
     return mesh;
 }
 
-/// Checks that the next line begins with the given words.
-void expect(TextLines& lines, std::string_view first, std::string_view second = {}) {
-    lines.need(first);
-    if (lines.word() != first || (!second.empty() && lines.word() != second)) {
-        lines.refuse_line(fmt::format("'{}{}{}' is expected", first, second.empty() ? "" : " ", second));
-    }
+/// Returns whether a word is the wanted keyword, in capitals or small letters.
+bool is(std::string_view word, std::string_view wanted) { return word == wanted || equal_in_any_case(word, wanted); }
+
+/// Returns whether a word begins a line with a colour, which some programs add.
+bool is_colour(std::string_view word) {
+    return (word.front() == 'c' || word.front() == 'C') && (is(word, "color") || is(word, "colour"));
 }
 
-/// Reads the facets of a solid, to its end.
-void read_facets(TextLines& lines, PlainMesh& mesh) {
-    for (;;) {
-        lines.need("'facet' or 'endsolid'");
-        const std::string_view word = lines.word();
-        if (word == "endsolid") return;
-        if (word != "facet") lines.refuse_line("'facet' or 'endsolid' is expected");
-        if (mesh.vertices.size() > 0xFFFFFFFF - 3) lines.refuse_line("a solid has more than 2^32 - 1 vertices");
-        expect(lines, "outer", "loop");
+bool is_keyword(std::string_view word) {
+    static constexpr std::string_view keywords[] = {"outer",    "facet",    "vertex", "endloop",
+                                                    "endfacet", "endsolid", "end"};
+    return std::any_of(std::begin(keywords), std::end(keywords), [&](auto wanted) { return is(word, wanted); });
+}
+
+class TextParser {
+public:
+    explicit TextParser(const FileContent& file) : file_(file), lines_(file) {}
+
+    std::vector<PlainMesh> parse() {
+        std::vector<PlainMesh> solids;
+        while (lines_.next()) {
+            if (!is(lines_.word(), "solid")) lines_.refuse_line("'solid' is expected");
+            const std::string_view name = lines_.rest();
+            solids.emplace_back().name = name;
+            lines_.skip(name.size());
+            read_facets(solids.back());
+        }
+        if (solids.empty()) refuse(file_.path, "has no solid");
+        return solids;
+    }
+
+private:
+    /// Reads the facets of a solid, to its end.
+    void read_facets(PlainMesh& mesh) {
+        for (;;) {
+            constexpr std::string_view expected = "'facet' or 'endsolid'";
+            const std::string_view word = statement(expected);
+            if (is_end(word, "endsolid")) return;
+            need(is(word, "facet"), expected);
+            if (mesh.vertices.size() > 0xFFFFFFFF - 3) lines_.refuse_line("a solid has more than 2^32 - 1 vertices");
+            read_facet(mesh);
+        }
+    }
+
+    /// Reads a facet behind its first word.
+    void read_facet(PlainMesh& mesh) {
+        need(is(statement("'outer loop'"), "outer") && is(lines_.word(), "loop"), "'outer loop'");
         for (int corner = 0; corner < 3; ++corner) {
-            expect(lines, "vertex");
+            need(is(statement("'vertex'"), "vertex"), "'vertex'");
             Point3d place;
-            for (double& at : place) at = lines.number("a coordinate");
+            for (double& at : place) at = lines_.number("a coordinate");
             add_corner(mesh, place);
         }
         mesh.end_face();
-        expect(lines, "endloop");
-        expect(lines, "endfacet");
+        need(is_end(statement("'endloop'"), "endloop"), "'endloop'");
+        need(is_end(statement("'endfacet'"), "endfacet"), "'endfacet'");
     }
-}
+
+    /// Returns the first word of the next statement: the next keyword in the line, or else the first word of the next line.
+    std::string_view statement(std::string_view expected) {
+        for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) {
+            if (is_keyword(word)) return word;
+        }
+        for (;;) {
+            lines_.need(expected);
+            const std::string_view word = lines_.word();
+            if (!is_colour(word)) return word;
+        }
+    }
+
+    /// Returns whether a statement is an end, such as "endloop" or "end loop".
+    bool is_end(std::string_view word, std::string_view wanted) {
+        return is(word, wanted) || (is(word, "end") && is(lines_.word(), wanted.substr(3)));
+    }
+
+    void need(bool holds, std::string_view expected) const {
+        if (!holds) lines_.refuse_line(fmt::format("{} is expected", expected));
+    }
+
+    const FileContent& file_;
+    TextLines lines_;
+};
 
 }  // namespace
 
 std::vector<PlainMesh> parse_stl(const FileContent& file) {
     if (is_binary(file.bytes)) return {parse_binary(file)};
-    std::vector<PlainMesh> solids;
-    TextLines lines(file);
-    while (lines.next()) {
-        if (lines.word() != "solid") lines.refuse_line("'solid' is expected");
-        solids.emplace_back().name = lines.rest();
-        read_facets(lines, solids.back());
-    }
-    if (solids.empty()) refuse(file.path, "has no solid");
-    return solids;
+    return TextParser(file).parse();
 }
 
 }  // namespace octopair::io

@@ -13,23 +13,23 @@ namespace octopair::io {
 
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+/// Returns whether a character of a line is white space: a space, or one of \t \v \f \r.
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 std::string_view without_space_before(std::string_view text) {
-    const auto begin = std::find_if_not(text.begin(), text.end(), is_space);
-    return text.substr(std::size_t(begin - text.begin()));
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    return text;
 }
 
 }  // namespace
 
 bool TextLines::next() {
     constexpr std::uint64_t lines_between_checks = 4096;
-    while (next_ < file_.bytes.size()) {
-        if (++number_ % lines_between_checks == 0) file_.checkpoint(next_);
-        const std::size_t end = std::min(file_.bytes.find('\n', next_), file_.bytes.size());
-        line_ = file_.bytes.substr(next_, end - next_);
-        next_ = std::min(end + 1, file_.bytes.size());
-        if (comment_ != 0) line_ = line_.substr(0, line_.find(comment_));
+    while (lines_.next()) {
+        number_ = lines_.number();
+        if (number_ % lines_between_checks == 0) file_.checkpoint(lines_.offset());
+        line_ = lines_.line();
+        if (comment_ != 0) cut(comment_);
         line_ = without_space_before(line_);
         if (!line_.empty()) return true;
     }
@@ -40,13 +40,30 @@ void TextLines::need(std::string_view what) {
     if (!next()) refuse(file_.path, fmt::format("ends where {} should follow", what));
 }
 
-std::string_view TextLines::word() {
-    line_ = without_space_before(line_);
-    const auto end = std::find_if(line_.begin(), line_.end(), is_space);
-    const std::string_view word = line_.substr(0, std::size_t(end - line_.begin()));
+void TextLines::join_continued(char mark) {
+    if (!line_.ends_with(mark)) return;
+    joined_ = line_;
+    while (joined_.ends_with(mark)) {
+        joined_.back() = ' ';
+        if (lines_.next()) joined_ += lines_.line();
+    }
+    line_ = joined_;
+}
+
+std::string_view TextLines::next_word() {
+    const std::string_view word = peek();
     line_.remove_prefix(word.size());
     return word;
 }
+
+std::string_view TextLines::peek() {
+    line_ = without_space_before(line_);
+    std::size_t size = 0;
+    while (size < line_.size() && !is_space(line_[size])) ++size;
+    return line_.substr(0, size);
+}
+
+void TextLines::skip(std::size_t characters) { line_.remove_prefix(characters); }
 
 std::string_view TextLines::rest() {
     line_ = without_space_before(line_);
@@ -77,7 +94,9 @@ double TextLines::unusual_number(std::string_view what) {
     if (whole && error == std::errc::result_out_of_range) {
         value = std::strtod(std::string(text).c_str(), nullptr);  // 0, the least numbers, or infinity
     } else if (!whole || error != std::errc()) {
-        refuse_line(fmt::format("{} is '{}', not a number", what, shown(given)));
+        const bool comma = given.find(',') != std::string_view::npos;
+        refuse_line(fmt::format("{} is '{}', not a number{}", what, shown(given),
+                                comma ? "; write numbers with a point and separate them with spaces" : ""));
     }
     if (!std::isfinite(value)) refuse_line(fmt::format("{} is {}, not a finite number", what, shown(given)));
     return value;
@@ -98,7 +117,8 @@ std::uint64_t TextLines::integer(std::string_view what, std::uint64_t most) {
 
 void TextLines::refuse_integer(std::string_view what, std::uint64_t most) {
     const std::string_view text = word();
-    if (text.empty() || text.find_first_not_of("0123456789") != std::string_view::npos)
+    if (text.empty()) refuse_line(fmt::format("the line ends where {} should follow", what));
+    if (text.find_first_not_of("0123456789") != std::string_view::npos)
         refuse_line(fmt::format("{} is '{}', not a number without sign", what, shown(text)));
     refuse_line(fmt::format("{} is {}; at most {} is possible", what, shown(text), most));
 }

@@ -1,28 +1,49 @@
 // TextLines: the lines of a text, their words and numbers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "io/files/line_splitter.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
 
 namespace octopair::io {
 
+/// Returns whether two texts are equal but for the case of ASCII letters.
+inline bool equal_in_any_case(std::string_view a, std::string_view b) {
+    constexpr auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return small(x) == small(y); });
+}
+
 class TextLines {
 public:
     /// `comment`: a character that begins a comment to the end of the line; 0: there are none. Borrows `file`.
-    explicit TextLines(const FileContent& file, char comment = 0) : file_(file), comment_(comment) {}
+    explicit TextLines(const FileContent& file, char comment = 0)
+        : file_(file), lines_(file.bytes), comment_(comment) {}
+    TextLines(const TextLines&) = delete;
+    TextLines& operator=(const TextLines&) = delete;
 
     /// Goes to the next line that has a word. Returns false at the end of the text. Throws: Error{cancelled}.
     bool next();
     /// Like next(), but the end of the text is an error. `what`: what is expected, for the message.
     void need(std::string_view what);
+    /// Joins the line with the lines after it, as long as it ends with `mark`, which becomes a space.
+    void join_continued(char mark);
 
+    /// Returns whether the next character of the line is `c`.
+    bool begins_with(char c) const { return line_.starts_with(c); }
     /// Returns the next word of the line; empty at its end.
-    std::string_view word();
+    std::string_view word() { return line_.empty() ? std::string_view() : next_word(); }
+    /// Like word(), but stays before the word.
+    std::string_view peek();
+    /// Skips so many characters of the next word. Requires: the word is as long.
+    void skip(std::size_t characters);
     /// Returns the rest of the line, without white space around it.
     std::string_view rest();
+    /// Removes the rest of the line from `comment` on.
+    void cut(char comment) { line_ = line_.substr(0, line_.find(comment)); }
     /// Returns the next word as a number. Throws: Error{bad_input} if it is none, or not finite.
     double number(std::string_view what);
     /// Returns the next word as an integer of at most `most`.
@@ -30,19 +51,23 @@ public:
 
     /// Throws: Error{bad_input} with the number of the line.
     [[noreturn]] void refuse_line(std::string_view why) const;
+    /// Number of the line; of joined lines, the first.
+    std::uint64_t line_number() const { return number_; }
     /// Offset of the byte after the line.
-    std::size_t offset() const { return next_; }
+    std::size_t offset() const { return lines_.offset(); }
 
 private:
+    std::string_view next_word();
     /// Like number(), for words that need a closer look: wrong ones, and those beyond the range of float64.
     double unusual_number(std::string_view what);
     [[noreturn]] void refuse_integer(std::string_view what, std::uint64_t most);
 
     const FileContent& file_;
+    LineSplitter lines_;
     char comment_;
-    std::size_t next_ = 0;  // begin of the next line
     std::uint64_t number_ = 0;
     std::string_view line_;
+    std::string joined_;  // joined lines
 };
 
 }  // namespace octopair::io
