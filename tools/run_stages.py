@@ -80,6 +80,7 @@ STAGES = {
 }
 LONG_STAGES = {f"long-{preset}": Stage(preset, ("-L", "exactness"), EXACTNESS, (1000000, 2000), 100)
                for preset in ("release", "clang")}
+LONG_STAGES["long-files"] = Stage("release", ("-L", "generated"), ("octopair_io_test",), share=2000)
 LONG_STAGES["long-near-misses"] = Stage("release", ("-L", "near_miss"),
                                         ("octopair_near_miss_reader", "octopair_program", "octopair_change_at_call"), share=5000)
 LONG_STAGES["long-packages"] = dataclasses.replace(STAGES["packages"], from_source=True)
