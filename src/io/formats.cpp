@@ -13,6 +13,7 @@
 #include "io/files/stream_input.hpp"
 #include "io/formats/content_marks.hpp"
 #include "io/formats/format_table.hpp"
+#include "io/meshes/gltf/gltf_scene.hpp"
 #include "io/meshes/mesh_reader.hpp"
 #include "octopair/error.hpp"
 
@@ -153,8 +154,11 @@ SceneFormat scene_format(const std::string& path) {
 
 bool is_imported_file(const std::string& path) {
     if (!is_mesh_file(path)) return false;
-    const FileFormat* const format = known_format(path).format;
-    return format == nullptr || format->reader != FormatReader::octopair;
+    const KnownFormat known = known_format(path);
+#ifdef OCTOPAIR_WITH_MESHES
+    if (is_gltf_ending(known.ending)) return may_be_gltf_for_assimp(path);
+#endif
+    return known.format == nullptr || known.format->reader != FormatReader::octopair;
 }
 
 bool is_ifc_file(const std::string& path) {

@@ -56,7 +56,8 @@ SceneFormat scene_format(const std::string& path);
 inline bool is_npy_file(const std::string& path) { return scene_format(path) == SceneFormat::npy; }
 inline bool is_json_file(const std::string& path) { return scene_format(path) == SceneFormat::json; }
 inline bool is_mesh_file(const std::string& path) { return scene_format(path) == SceneFormat::mesh; }
-/// Returns whether Assimp reads a file: all mesh files but those that octopair's own readers read.
+/// Returns whether Assimp reads a file: all mesh files but those that octopair's own readers read. Also returns true for some glTF files
+/// that Assimp does not read (may_be_gltf_for_assimp()).
 bool is_imported_file(const std::string& path);
 
 /// The axis of a scene that points up.

@@ -10,6 +10,7 @@
 #include "io/files/failure.hpp"
 #include "io/formats.hpp"
 #include "io/json/json_scene.hpp"
+#include "io/meshes/gltf/gltf_scene.hpp"
 #include "io/meshes/mesh_reader.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
 
@@ -120,6 +121,9 @@ LoadedScene read_known(const std::string& path, const SceneContent& content, con
         case SceneFormat::mesh:
 #ifdef OCTOPAIR_WITH_MESHES
             if (is_plain_ending(format_ending(path))) return read_plain_scene(path, content, stop);
+            if (is_gltf_ending(format_ending(path))) {
+                if (auto scene = read_gltf_scene(path, content, stop)) return std::move(*scene);
+            }
             return read_mesh_scene(path, content);
 #endif
         case SceneFormat::unknown:

@@ -1,8 +1,10 @@
 #include "io/json/json_fields.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <limits>
-#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,68 +18,114 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_levels = 16;
-
-/// Parser callback: tracks the path to the current value, and refuses repeated keys and deep nesting.
-class ParseMonitor {
+/// Iterates over a text. Throws Error{cancelled} soon after a stop request, also within a long string.
+class WatchedText {
 public:
-    ParseMonitor(std::string_view file, const std::stop_token& stop) : file_(file), stop_(stop) {}
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
 
-    bool operator()(int depth, json::parse_event_t event, const json& parsed) {
-        if (++events_ % 65536 == 0 && stop_.stop_requested()) cancel();
-        switch (event) {
-            case json::parse_event_t::object_start:
-            case json::parse_event_t::array_start:
-                if (depth >= max_levels) refuse(place(), fmt::format("more than {} levels of nesting", max_levels));
-                levels_.push_back({.is_array = event == json::parse_event_t::array_start});
-                break;
-            case json::parse_event_t::object_end:
-            case json::parse_event_t::array_end:
-                levels_.pop_back();
-                [[fallthrough]];
-            case json::parse_event_t::value:
-                if (!levels_.empty()) ++levels_.back().values;
-                break;
-            case json::parse_event_t::key:
-                begin_key(parsed.get_ref<const std::string&>());
-                break;
-        }
+    WatchedText(const char* at, const std::stop_token& stop) : at_(at), stop_(&stop) {}
+
+    const char& operator*() const { return *at_; }
+    WatchedText& operator++() {
+        constexpr std::uintptr_t piece = 65536;
+        if (reinterpret_cast<std::uintptr_t>(++at_) % piece == 0 && stop_->stop_requested()) cancel();
+        return *this;
+    }
+    WatchedText operator++(int) {
+        const WatchedText before = *this;
+        ++*this;
+        return before;
+    }
+    bool operator==(const WatchedText& other) const { return at_ == other.at_; }
+
+private:
+    const char* at_;
+    const std::stop_token* stop_;
+};
+
+/// Builds the values that the parser finds. Refuses repeated keys and deep nesting. The callback of json::parse() could do so, too, but
+/// then the time of the parser grows as the square of the length of arrays.
+class ValueBuilder {
+public:
+    ValueBuilder(std::string_view file, int max_levels) : file_(file), max_levels_(max_levels) {}
+
+    json take() { return std::move(root_); }
+
+    // The parser calls these functions. Each returns true, to continue.
+    bool null() { return add(nullptr); }
+    bool boolean(bool value) { return add(value); }
+    bool number_integer(json::number_integer_t value) { return add(value); }
+    bool number_unsigned(json::number_unsigned_t value) { return add(value); }
+    bool number_float(json::number_float_t value, const std::string&) { return add(value); }
+    bool string(std::string& value) { return add(std::move(value)); }
+    bool binary(json::binary_t& value) { return add(std::move(value)); }
+    bool start_object(std::size_t) { return begin(json::object()); }
+    bool start_array(std::size_t) { return begin(json::array()); }
+    bool end_object() { return end(); }
+    bool end_array() { return end(); }
+    bool key(const std::string& key) {
+        Level& level = levels_.back();
+        const auto [place_of_value, is_new] = level.value->get_ref<json::object_t&>().emplace(key, nullptr);
+        if (!is_new) refuse(place(), fmt::format("the key '{}' occurs twice in one object", shown_text(key)));
+        level.next = &place_of_value->second;
+        level.key = &place_of_value->first;
+        return true;
+    }
+    [[noreturn]] bool parse_error(std::size_t, const std::string&, const json::exception& error);
+
+private:
+    /// An array or an object that has begun and not ended.
+    struct Level {
+        json* value;
+        json* next = nullptr;  ///< in an object: the place of the value after the last key; null if the value is there
+        const std::string* key = nullptr;  ///< in an object: the last key
+    };
+
+    /// Adds a value. Returns it in its place.
+    json& place_value(json&& value) {
+        if (levels_.empty()) return root_ = std::move(value);
+        Level& level = levels_.back();
+        if (level.next != nullptr) return *std::exchange(level.next, nullptr) = std::move(value);
+        return level.value->get_ref<json::array_t&>().emplace_back(std::move(value));
+    }
+    bool add(json&& value) {
+        (void)place_value(std::move(value));
+        return true;
+    }
+    bool begin(json&& value) {
+        if (levels_.size() >= std::size_t(max_levels_))
+            refuse(place(), fmt::format("more than {} levels of nesting", max_levels_));
+        levels_.push_back({&place_value(std::move(value))});
+        return true;
+    }
+    bool end() {
+        levels_.pop_back();
         return true;
     }
 
-    /// Returns the file and the path to the current value, for example "f.json: objects[1].shape".
+    /// Returns the file and the path to the value that is parsed, for example "f.json: objects[1].shape".
     std::string place() const {
         std::string path;
-        for (const Level& level : levels_) {
-            if (level.is_array) {
-                path += fmt::format("[{}]", level.values);
-            } else if (level.keys.size() > level.values) {
-                path += fmt::format("{}{}", path.empty() ? "" : ".", shown_text(level.key));
+        for (std::size_t i = 0; i < levels_.size(); ++i) {
+            const Level& level = levels_[i];
+            const bool last = i + 1 == levels_.size();
+            if (level.value->is_array()) {
+                path +=
+                    fmt::format("[{}]", level.value->size() - (last ? 0 : 1));  // that of an open value is in the array
+            } else if (level.key != nullptr && (!last || level.next != nullptr)) {
+                path += fmt::format("{}{}", path.empty() ? "" : ".", shown_text(*level.key));
             }
         }
         return path.empty() ? std::string(file_) : fmt::format("{}: {}", file_, path);
     }
 
-private:
-    /// An array or an object that has begun and not ended.
-    struct Level {
-        bool is_array = false;
-        std::size_t values = 0;  ///< number of complete values
-        std::set<std::string> keys = {};
-        std::string key = {};  ///< last key
-    };
-
-    void begin_key(const std::string& key) {
-        Level& level = levels_.back();
-        if (!level.keys.insert(key).second) {
-            refuse(place(), fmt::format("the key '{}' occurs twice in one object", shown_text(key)));
-        }
-        level.key = key;
-    }
-
     std::string_view file_;
-    const std::stop_token& stop_;
-    std::uint64_t events_ = 0;
+    int max_levels_;
+    json root_;
     std::vector<Level> levels_;
 };
 
@@ -91,6 +139,12 @@ std::string message_of(const json::exception& error) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
     return text;
+}
+
+bool ValueBuilder::parse_error(std::size_t, const std::string&, const json::exception& error) {
+    // The message of a wrong text has the line and the column. Other errors are about a value, such as a number beyond float64.
+    const bool is_text = dynamic_cast<const json::parse_error*>(&error) != nullptr;
+    refuse(is_text ? std::string(file_) : place(), message_of(error));
 }
 
 double number_of(const json& value, const std::string& place, std::string_view wanted) {
@@ -107,20 +161,14 @@ void refuse_json_type(const std::string& place, const json& value, std::string_v
                                  : fmt::format("{} {}, not {}", vowel ? "an" : "a", type, wanted));
 }
 
-json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop) {
+json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop, int max_levels) {
     // The parser would take a byte 0 as the end of the text, and ignore the rest.
     if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
         refuse(file, fmt::format("byte {} is 0; a JSON file is text", zero));
-    ParseMonitor monitor(file, stop);
-    try {
-        return json::parse(text, [&monitor](int depth, json::parse_event_t event, const json& parsed) {
-            return monitor(depth, event, parsed);
-        });
-    } catch (const json::parse_error& error) {  // the message has the line and the column
-        refuse(file, message_of(error));
-    } catch (const json::exception& error) {
-        refuse(monitor.place(), message_of(error));
-    }
+    ValueBuilder builder(file, max_levels);
+    const WatchedText begin(text.data(), stop), end(text.data() + text.size(), stop);
+    (void)json::sax_parse(begin, end, &builder);
+    return builder.take();
 }
 
 std::string shown_text(std::string_view text) {

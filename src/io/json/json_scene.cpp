@@ -14,6 +14,7 @@
 #include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #ifdef OCTOPAIR_WITH_MESHES
+#include "io/meshes/gltf/gltf_scene.hpp"
 #include "io/meshes/import_warnings.hpp"
 #include "io/meshes/mesh_file.hpp"
 #include "io/meshes/mesh_shapes.hpp"
@@ -175,7 +176,11 @@ shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& sce
 #ifdef OCTOPAIR_WITH_MESHES
     check_readable(path);
     if (std::string warning = name_warning(path); !warning.empty()) scene.warnings.push_back(std::move(warning));
-    if (is_plain_ending(format_ending(path))) return read_plain_mesh(path, scene, stop);
+    const std::string ending = format_ending(path);
+    if (is_plain_ending(ending)) return read_plain_mesh(path, scene, stop);
+    if (is_gltf_ending(ending)) {
+        if (auto mesh = read_gltf_mesh(path, scene, stop)) return std::move(*mesh);
+    }
     const MeshFile file(path, true);
     scene.largest_rounded = std::max(scene.largest_rounded, file.largest_rounded());
     for (std::string& warning : import_warnings(file)) scene.warnings.push_back(std::move(warning));

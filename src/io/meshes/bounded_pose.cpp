@@ -1,5 +1,6 @@
 #include "io/meshes/bounded_pose.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/rounding.hpp"
@@ -81,6 +82,14 @@ Pose BoundedPose::value() const {
         for (int column = 0; column < 4; ++column) pose.rows[row][column] = rows_[row][column].value;
     }
     return pose;
+}
+
+double BoundedPose::largest_scale() const {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        largest = std::max(largest, std::hypot(rows_[0][axis].value, rows_[1][axis].value, rows_[2][axis].value));
+    }
+    return largest;
 }
 
 }  // namespace octopair

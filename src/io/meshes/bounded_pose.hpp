@@ -38,6 +38,8 @@ public:
     BoundedPoint apply(const Point3d& point) const;
     /// Returns the pose without its bounds.
     Pose value() const;
+    /// Returns the largest factor by which the pose lengthens an axis.
+    double largest_scale() const;
 
 private:
     std::array<std::array<Bounded, 4>, 3> rows_;

@@ -19,7 +19,7 @@ namespace {
 /// Returns the warning that octopair does not vouch for a format, or an empty text.
 std::string unchecked_format(const MeshFile& file) {
     const FileFormat* const format = file.known().format;
-    if (format != nullptr && format->reader != FormatReader::assimp) return {};
+    if (format != nullptr && format->reader == FormatReader::checked_assimp) return {};
     const std::string name = format != nullptr ? std::string(format->name) : file.known().ending.substr(1);
     return fmt::format(
         "{}: Assimp reads {}; octopair does not vouch for it: check the number of objects and the bounds", file.path(),

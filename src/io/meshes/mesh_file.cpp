@@ -41,15 +41,6 @@ double translation_of(const aiNode& node) {
     return std::max({std::abs(double(m.a4)), std::abs(double(m.b4)), std::abs(double(m.c4))});
 }
 
-/// Returns the largest factor by which a pose lengthens an axis.
-double scale_of(const BoundedPose& pose) {
-    const auto rows = pose.value().rows;
-    double largest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        largest = std::max(largest, std::hypot(rows[0][axis], rows[1][axis], rows[2][axis]));
-    return largest;
-}
-
 Buffer<char> read_bytes(const InputFile& file) {
     Buffer<char> bytes{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(bytes.span()));
@@ -106,7 +97,7 @@ public:
                     refuse(file_.path(), "has a node that its importer could not read");
                 const aiNode& child = *at.node->mChildren[i];
                 waiting.push_back({&child, at.name + '/' + name_of(child, i), at.pose * pose_of(child),
-                                   at.translations + scale_of(at.pose) * translation_of(child)});
+                                   at.translations + at.pose.largest_scale() * translation_of(child)});
             }
             if (at.node->mNumMeshes > 0) instances.push_back(at);
         }
@@ -192,7 +183,7 @@ void MeshFile::cut_faces() {
 }
 
 double MeshFile::largest_rounded() const {
-    double largest = scale_of(root_pose(*scene_->mRootNode, known_)) * ifc_text_.largest_coordinate;
+    double largest = root_pose(*scene_->mRootNode, known_).largest_scale() * ifc_text_.largest_coordinate;
     for (const MeshInstance& instance : instances_) {
         double vertex_size = 0;
         for (const unsigned number : instance.meshes()) {
@@ -200,7 +191,7 @@ double MeshFile::largest_rounded() const {
                 for (const double at : vertex(mesh(number), index)) vertex_size = std::max(vertex_size, std::abs(at));
             }
         }
-        largest = std::max(largest, instance.translations + scale_of(instance.pose) * vertex_size);
+        largest = std::max(largest, instance.translations + instance.pose.largest_scale() * vertex_size);
     }
     return largest;
 }

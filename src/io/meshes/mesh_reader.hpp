@@ -1,4 +1,5 @@
-// Reads mesh files through Assimp; plain/ has readers of simple formats. An object is a node with meshes, or a triangle.
+// Reads mesh files through Assimp; plain/ has readers of simple formats, and gltf/ that of glTF. An object is a node with meshes, or
+// a triangle.
 //
 //   node      The name is the node path from the root, joined by "/". A node without a name gives "#" and its position
 //             among its parent's children. The box is float64 and rounded outward. It encloses the vertices that faces use

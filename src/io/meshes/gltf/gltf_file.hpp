@@ -1,0 +1,87 @@
+// GltfFile: a glTF 2.0 file in memory, as text or as GLB: its JSON and its buffers.
+//
+// - The first bytes show whether a file is GLB, not its ending.
+// - A buffer is read when it is first used: from base64 in its URI, from the chunk of a GLB file, or from another file. The name
+//   of another file is relative to the folder of the glTF file. URIs with a scheme, such as http, and absolute names are refused.
+// - Readers call charge() before they allocate memory for what the file describes. So a small file cannot fill the memory.
+//
+// Source: Khronos, glTF 2.0 specification, sections 3 (JSON, buffers) and 4 (GLB).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "base/memory.hpp"
+#include "io/files/input_file.hpp"
+#include "io/json/json_fields.hpp"
+
+namespace octopair::io::gltf {
+
+/// A range of bytes of a buffer.
+struct BufferView {
+    std::span<const std::byte> bytes;
+    std::uint64_t stride;  ///< bytes from one element to the next; 0 if elements follow without gaps
+    std::string name;      ///< for messages, for example "bufferViews[3]"
+};
+
+class GltfFile {
+public:
+    /// Reads a file without its buffers.
+    /// Throws: Error{bad_input} for a file that is cut, or whose JSON is wrong; Error{io_failed, cancelled}.
+    GltfFile(const std::string& path, const std::stop_token& stop);
+    /// The same with the content of a file.
+    GltfFile(std::string path, Buffer<std::byte> content, const std::stop_token& stop);
+
+    const std::string& path() const { return path_; }
+    /// Returns the version of glTF, for example "2.0".
+    const std::string& version() const { return version_; }
+    const nlohmann::json& root() const { return root_; }
+    /// Returns the root as fields with the place "FILE".
+    JsonFields fields() const { return {root_, path_}; }
+
+    /// Returns the number of objects in an array of the root, for example "meshes"; 0 if the root does not have it.
+    std::size_t count(std::string_view list) const;
+    /// Returns an object of an array of the root. Its place is "FILE: meshes[3]".
+    /// Throws: Error{bad_input} if there is no such object.
+    JsonFields item(std::string_view list, std::uint64_t number) const;
+    /// Returns a buffer view. Borrows the bytes from this object.
+    /// Throws: Error{bad_input} if it is not inside its buffer, or the buffer cannot be read; Error{io_failed, cancelled}.
+    BufferView view(std::uint64_t number);
+
+    /// Counts memory for `count` values of `bytes` each.
+    /// Throws: Error{resource_limit} if all counted memory is more than 4 GiB and 64 times the size of the files.
+    void charge(std::uint64_t count, std::uint64_t bytes);
+    /// Throws: Error{cancelled} after a stop request.
+    void checkpoint() const;
+    const std::stop_token& stop() const { return stop_; }
+
+private:
+    void split_glb();
+    void parse(std::span<const std::byte> text);
+    std::span<const std::byte> buffer(std::uint64_t number);
+    std::span<const std::byte> bytes_of(const JsonFields& buffer, std::uint64_t number);
+    Buffer<std::byte> embedded(const JsonFields& buffer, std::string_view uri) const;
+    Buffer<std::byte> other_file(const JsonFields& buffer, std::string_view uri) const;
+
+    std::string path_;
+    std::stop_token stop_;
+    Buffer<std::byte> content_;
+    std::span<const std::byte> binary_chunk_;  // of a GLB file
+    nlohmann::json root_;
+    std::string version_;
+    std::map<std::uint64_t, Buffer<std::byte>> buffers_;  // those that are not in the chunk
+    std::uint64_t bytes_read_ = 0, charged_ = 0;
+};
+
+/// Returns whether a file may need Assimp: it is of glTF 1.0, or has meshes that are compressed with Draco. Looks at the text only, so
+/// it may also be true for other files. Returns false if the file cannot be read.
+bool may_need_assimp(const std::string& path);
+
+}  // namespace octopair::io::gltf

@@ -1,0 +1,73 @@
+// GltfMesh: a mesh of a glTF file, decoded to float64 triangles.
+//
+// - Triangles, strips and fans become triangles, in the order of the file. A primitive without indices uses its vertices in order.
+// - Vertices are those that triangles use, in the order of their first use, for each primitive anew.
+// - Points and lines give only vertices, which count for boxes.
+// - Morph targets are ignored.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/meshes/gltf/accessor.hpp"
+#include "io/meshes/gltf/gltf_file.hpp"
+#include "octopair/shapes.hpp"
+
+namespace octopair::io::gltf {
+
+struct GltfMesh {
+    shape::Mesh triangles;
+    std::vector<Point3d> loose;  ///< vertices of points and lines
+    std::set<std::string> materials;
+    double largest = 0;       ///< largest coordinate, without its sign
+    bool has_floats = false;  ///< true if coordinates are float32 in the file
+    double step = 0;  ///< largest distance between neighbouring values of integers; 0 if no coordinates are integers
+    bool has_targets = false;      ///< true if it has morph targets
+    std::size_t incomplete = 0;    ///< number of primitives whose last vertices make no complete face
+    std::string first_incomplete;  ///< what is wrong with the first of them, without the file
+
+    bool empty() const { return triangles.vertices.empty() && loose.empty(); }
+};
+
+/// Decodes meshes of one file. Keeps working memory from mesh to mesh.
+class MeshDecoder {
+public:
+    explicit MeshDecoder(GltfFile& file) : file_(file) {}
+
+    /// Returns a mesh. `node` is the name of a node with the mesh, for messages.
+    /// Throws: Error{bad_input} for an index out of range and for a vertex that is not finite; Error{resource_limit, cancelled};
+    /// what GltfFile::view() throws.
+    GltfMesh decode(std::uint64_t number, std::string_view node);
+
+private:
+    /// Numbers of the vertices of a primitive, in the order of first use.
+    class VertexNumbers {
+    public:
+        void begin(std::uint64_t vertices);
+        /// Returns the number of a vertex, and whether it is used for the first time. `next`: the number of a new vertex.
+        std::pair<std::uint32_t, bool> number_of(std::uint64_t vertex, std::uint32_t next);
+
+    private:
+        std::vector<std::uint32_t> used_in_,
+            numbers_;  // per vertex: the last primitive that used it, and its number there
+        std::uint32_t primitive_ = 0;
+    };
+
+    struct Primitive;
+    void add_primitive(const JsonFields& fields, std::string_view node, GltfMesh& mesh);
+    /// Appends the used vertices to `to`. Returns the number of each corner in it.
+    std::vector<std::uint32_t> add_vertices(const Primitive& primitive, std::uint64_t corners,
+                                            std::vector<Point3d>& to);
+
+    GltfFile& file_;
+    VertexNumbers numbers_;
+};
+
+/// Throws: Error{bad_input} "FILE: node 'NODE': vertex N has the coordinate VALUE, which is not finite".
+[[noreturn]] void refuse_vertex(const std::string& file, std::string_view node, std::uint64_t vertex, double value);
+
+}  // namespace octopair::io::gltf

@@ -1,0 +1,24 @@
+// URIs of buffers of a glTF file: data in the URI itself, or the name of a file.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+#include "base/memory.hpp"
+
+namespace octopair::io::gltf {
+
+/// Returns `uri` with each %XX replaced by the byte XX. A % without two hexadecimal digits stays as it is.
+std::string percent_decoded(std::string_view uri);
+
+/// Returns the scheme of an absolute URI, for example "https". Returns nothing for the name of a file.
+std::optional<std::string_view> scheme_of(std::string_view uri);
+
+/// Returns the bytes of base64 `text`, or nothing if it is not base64. Padding at the end may be left out.
+/// Throws: Error{cancelled} soon after a stop request.
+std::optional<Buffer<std::byte>> decoded_base64(std::string_view text, const std::stop_token& stop);
+
+}  // namespace octopair::io::gltf
