@@ -4,11 +4,14 @@
 //           the least overlap.
 // Apart     If the cores do not meet, its direction is the one that proves their distance.
 // Meeting   If they meet, an expanding polytope finds it (difference_hull.hpp).
+// Near      A small depth may be the error of its direction, which matters at the far points of a large object. Then the exact directions of
+//           faces and edges are tried, too (face_directions.hpp).
 // Safety    If rounding misleads the search, the depth is larger than necessary, but the contact separates the objects.
 #include <algorithm>
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/difference_hull.hpp"
+#include "narrow_phase/convex/face_directions.hpp"
 #include "narrow_phase/convex/least_overlap.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
 #include "narrow_phase/convex/scaled_pair.hpp"
@@ -32,6 +35,18 @@ Point3d point_in_both(const LocalConvexPair& pair, const CoreGap& core) {
     return vector::plus(core.on_a, vector::times(way, (begin + end) / 2 / length));
 }
 
+/// Tries further directions if the depth is so small that it may be the error of the best direction.
+void improve_small_depth(const LocalConvexPair& pair, LeastOverlap& least) {
+    constexpr double close = 1e-8, rounding_steps = 64;
+    const auto may_be_error = [&](double error) {
+        const double depth = least.overlap() + pair.radii();
+        return depth > 0 && depth <= error;
+    };
+    if (may_be_error(close * pair.size())) propose_face_directions(pair, -pair.radii(), least);
+    const bool is_curved = pair.a().is_curved() || pair.b().is_curved();
+    if (is_curved && may_be_error(rounding_steps * pair.slack())) least.descend();
+}
+
 }  // namespace
 
 ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
@@ -51,6 +66,7 @@ ConvexContact convex_contact(const PosedConvex& a, const PosedConvex& b) {
         propose_axes(pair.b(), least);
         (void)find_least_overlap(least, pair.slack());
     }
+    improve_small_depth(pair, least);
     const Point3d& normal = least.normal();
     ConvexContact contact;
     contact.depth = std::max(0.0, least.overlap() + pair.radii());

@@ -30,6 +30,10 @@ public:
     Point3d middle() const;
     /// Points of the core in local coordinates; empty if there are more than 4 or the core is not a set of points.
     std::span<const Point3d> points() const { return {points_.data(), count_}; }
+    /// True if the core is the convex hull of a set of points.
+    bool is_points() const { return count_ > 0 || solid_->core == ConvexSolid::Core::points; }
+    /// True if the core has a curved surface.
+    bool is_curved() const { return !is_points() && solid_->core != ConvexSolid::Core::box; }
     /// Returns all points of the core in local coordinates; empty if the core is not a set of points.
     std::vector<Point3d> all_points() const;
     /// Pose of the solid in local coordinates; the identity for triangles and points.
