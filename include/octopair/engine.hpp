@@ -94,7 +94,8 @@ private:
     virtual unsigned verification_threads() const;
 };
 
-/// Returns an engine that uses `threads` threads of this process; 0: one per core.
+/// Returns an engine that uses `threads` threads of this process; 0: one per core that the process may use (taskset(1), control
+/// groups).
 std::unique_ptr<Engine> make_local_engine(unsigned threads = 0);
 
 /// Returns the pairs of `boxes`, found by a temporary local engine. For repeated calls keep an Engine: it reuses its memory.

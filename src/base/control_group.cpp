@@ -1,11 +1,16 @@
 #include "base/control_group.hpp"
 
+#include <sched.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 namespace octopair {
 
@@ -69,13 +74,23 @@ ControlGroupLimits control_group_limits(const std::string& root) {
     return limits;
 }
 
+unsigned allowed_processors() {
+    // The kernel refuses a set that is smaller than its own, which may have more processors than cpu_set_t.
+    constexpr std::size_t most_sets = 64;
+    for (std::size_t sets = 1; sets <= most_sets; sets *= 2) {
+        std::vector<cpu_set_t> processors(sets);
+        const std::size_t bytes = sets * sizeof(cpu_set_t);
+        if (::sched_getaffinity(::getpid(), bytes, processors.data()) == 0)
+            return std::max(1u, unsigned(CPU_COUNT_S(bytes, processors.data())));
+        if (errno != EINVAL) break;
+    }
+    return std::max(1u, std::thread::hardware_concurrency());
+}
+
 unsigned available_cores() {
-    static const unsigned available = [] {
-        const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-        const std::optional<double> allowed = control_group_limits().cores;
-        return allowed ? unsigned(std::clamp(std::ceil(*allowed), 1.0, double(cores))) : cores;
-    }();
-    return available;
+    static const std::optional<double> limit = control_group_limits().cores;
+    const unsigned processors = allowed_processors();
+    return limit ? unsigned(std::clamp(std::ceil(*limit), 1.0, double(processors))) : processors;
 }
 
 }  // namespace octopair

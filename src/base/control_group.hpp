@@ -18,8 +18,11 @@ struct ControlGroupLimits {
 /// Returns the strictest limits on the control group of this process and its parents. `root`: folder that contains proc and sys.
 ControlGroupLimits control_group_limits(const std::string& root = "");
 
-/// Returns how many threads can run at a time: the cores of the machine, or fewer if the control group has less processor time. At
-/// least 1. The limits are read once.
+/// Returns the number of processors that this process may run on (sched_setaffinity(2) of its first thread); at least 1.
+OCTOPAIR_PRIVATE_EXPORT unsigned allowed_processors();
+
+/// Returns how many threads can run at a time: the processors that this process may run on, or fewer if the control group has less
+/// processor time. At least 1. The limits of the control group are read once.
 OCTOPAIR_PRIVATE_EXPORT unsigned available_cores();
 
 }  // namespace octopair

@@ -2,6 +2,8 @@
 #include "base/control_group.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -57,6 +59,36 @@ TEST_F(ControlGroup, OfVersion1HasAFolderForEachController) {
     write("/sys/fs/cgroup/cpu,cpuacct/cpu.cfs_quota_us", "-1\n");
     EXPECT_FALSE(limits().memory_bytes);
     EXPECT_FALSE(limits().cores);
+}
+
+/// Restricts the process to one of its processors, as taskset does.
+class OneProcessor {
+public:
+    OneProcessor() {
+        EXPECT_EQ(::sched_getaffinity(::getpid(), sizeof before_, &before_), 0);
+        cpu_set_t one;
+        CPU_ZERO(&one);
+        for (int i = 0; CPU_COUNT(&one) == 0 && i < CPU_SETSIZE; ++i) {
+            if (CPU_ISSET(i, &before_)) CPU_SET(i, &one);
+        }
+        EXPECT_EQ(::sched_setaffinity(::getpid(), sizeof one, &one), 0);
+    }
+    ~OneProcessor() { EXPECT_EQ(::sched_setaffinity(::getpid(), sizeof before_, &before_), 0); }
+    OneProcessor(const OneProcessor&) = delete;
+    OneProcessor& operator=(const OneProcessor&) = delete;
+
+private:
+    cpu_set_t before_ = {};
+};
+
+TEST(AvailableCores, AreThoseThatTheProcessMayUse) {
+    const unsigned before = allowed_processors();
+    {
+        const OneProcessor one;
+        EXPECT_EQ(allowed_processors(), 1u);
+        EXPECT_EQ(available_cores(), 1u);
+    }
+    EXPECT_EQ(allowed_processors(), before);
 }
 
 TEST(AvailableCores, AreThoseOfTheMachineOrFewer) {
