@@ -67,7 +67,9 @@ std::unique_ptr<Filter> make_parent_filter(std::span<const std::uint32_t> parent
 /// Options of the exact filters.
 struct ExactOptions {
     double margin = 0;  ///< largest Euclidean distance, besides paddings, at which a pair is kept; finite, >= 0
-    std::uint32_t max_contacts = 16;  ///< contacts stored per pair, the deepest first; 0: none
+    /// Largest number of contacts stored per pair. Of more contacts, the deepest are kept; of equally deep ones, those of the triangles
+    /// with the least numbers. Finding::more_contacts then is true. Bounds memory, too. 0: none.
+    std::uint32_t max_contacts = 16;
     /// Length, finite, >= 0. Objects are `touching` if a translation of at most this length is proven to separate them, to
     /// rounding.
     double tolerance = 0;

@@ -145,10 +145,9 @@ struct MeshAndSolid {
     }
     std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
     void find_contacts(const ContactRequest& request, Finding& finding) const {
-        find_mesh_solid_contacts(mesh, solid, {rounding, max_error(rounding), request.stop}, finding);
+        find_mesh_solid_contacts(mesh, solid, {request.max_contacts, rounding, max_error(rounding), request.stop},
+                                 finding);
         set_class(rounding, finding);
-        finding.more_contacts = finding.contacts.size() > request.max_contacts;
-        if (finding.more_contacts) finding.contacts.resize(request.max_contacts);
     }
     void set_contained_depth(const std::stop_token&, Finding& finding) const {
         set_depth_of_mesh_and_solid(mesh, solid, max_error(rounding), finding);

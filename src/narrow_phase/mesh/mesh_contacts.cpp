@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <vector>
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/convex_pair.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
+#include "narrow_phase/mesh/deepest_contacts.hpp"
 #include "narrow_phase/mesh/mesh_interiors.hpp"
 #include "narrow_phase/mesh/mesh_leaves.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
@@ -106,15 +106,10 @@ private:
     double outside_radius_ = 0;
 };
 
-/// Order of the contacts: by descending depth, then by ascending triangle numbers.
-bool comes_first(const Contact& a, const Contact& b) {
-    return std::tuple(-a.depth, a.feature_a, a.feature_b) < std::tuple(-b.depth, b.feature_a, b.feature_b);
-}
-
 class ContactSearch {
 public:
     ContactSearch(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request)
-        : a_(a), b_(b), request_(request) {}
+        : a_(a), b_(b), request_(request), contacts_(request.max_contacts) {}
 
     void run(Finding& finding) {
         visit_meeting_triangles(a_, b_, [&](const MeetingTriangles& at) {
@@ -130,9 +125,7 @@ public:
             finding.depth = 0;
             finding.depth_kind = DepthKind::least;
         }
-        std::sort(contacts_.begin(), contacts_.end(), comes_first);
-        finding.more_contacts = more_;
-        finding.contacts = std::move(contacts_);
+        contacts_.give(finding);
     }
 
 private:
@@ -144,28 +137,15 @@ private:
         deepest_ = std::max(deepest_, made.depth);
         made.feature_a = at.number_a;
         made.feature_b = at.number_b;
-        keep(made);
-    }
-
-    /// Adds a contact to a heap of at most max_contacts, whose front is the last contact in order.
-    void keep(const Contact& contact) {
-        if (contacts_.size() == request_.max_contacts) {
-            more_ = true;
-            if (contacts_.empty() || !comes_first(contact, contacts_.front())) return;
-            std::pop_heap(contacts_.begin(), contacts_.end(), comes_first);
-            contacts_.pop_back();
-        }
-        contacts_.push_back(contact);
-        std::push_heap(contacts_.begin(), contacts_.end(), comes_first);
+        contacts_.add(made);
     }
 
     const PosedMesh &a_, &b_;
     const ContactRequest& request_;
     bool crossing_ = false;                    // triangles pass through each other
     std::vector<TouchingTriangles> touching_;  // all that meet, unless some pass through each other
-    bool more_ = false;
-    double deepest_ = 0;  // depth of the deepest contact, kept or not
-    std::vector<Contact> contacts_;
+    double deepest_ = 0;                       // depth of the deepest contact, kept or not
+    DeepestContacts contacts_;
 };
 
 }  // namespace

@@ -6,12 +6,16 @@
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/convex_plane.hpp"
+#include "narrow_phase/mesh/deepest_contacts.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"
 
 namespace octopair {
 
 namespace {
+
+/// Largest number of contact points, and about of points of a hull, between which middles are tested.
+constexpr std::size_t most_samples = 16;
 
 /// Returns a point deep inside the core: the mean of its points, or the origin of its coordinates.
 Point3d deep_place_of(const ConvexSolid& solid) {
@@ -49,14 +53,23 @@ double deepest_in_mesh(const PosedMesh& mesh, double radius, const std::vector<P
     return deepest;
 }
 
+/// Returns the contact points of some of the `count` triangles that meet the solid, at a fixed stride.
+std::vector<Point3d> some_contact_points(const PosedMesh& mesh, const BoxedSolid& solid, std::size_t count) {
+    std::vector<Point3d> points;
+    const std::size_t step = count / most_samples + 1;
+    std::size_t i = 0;
+    visit_meeting_triangles(mesh, solid, [&](std::uint32_t, const Triangle3d& triangle) {
+        if (i++ % step == 0) points.push_back(convex_contact(PosedConvex(triangle), solid.posed()).point);
+        return true;
+    });
+    return points;
+}
+
 /// Returns the middles between some points of a hull: its own, and those of contacts. A flat hull has no interior whose points
 /// could be deep in triangles, so it may pass through a mesh while its own points are outside.
-std::vector<Point3d> middles_of(const BoxedSolid& solid, const std::vector<Contact>& contacts) {
-    constexpr std::size_t most = 16;
-    std::vector<Point3d> points;
-    for (std::size_t i = 0; i < contacts.size(); i += contacts.size() / most + 1) points.push_back(contacts[i].point);
+std::vector<Point3d> middles_of(const BoxedSolid& solid, std::vector<Point3d> points) {
     const std::vector<Point3d>& own = solid.solid.points;
-    for (std::size_t i = 0; i < own.size(); i += own.size() / most + 1) {
+    for (std::size_t i = 0; i < own.size(); i += own.size() / most_samples + 1) {
         points.push_back(vector::posed(solid.box.pose, own[i]));
     }
     std::vector<Point3d> middles;
@@ -117,7 +130,9 @@ void set_depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid,
 
 void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
                               Finding& finding) {
+    DeepestContacts contacts(request.max_contacts);
     double deepest = 0;
+    std::size_t count = 0;
     visit_meeting_triangles(mesh, solid, [&](std::uint32_t at, const Triangle3d& triangle) {
         const bool oriented = mesh.tree.parts.sides[at] == MeshParts::Side::oriented;
         const Point3d outward = oriented ? outward_of(triangle, mesh.pose) : Point3d{};
@@ -125,7 +140,8 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
         Contact contact = {least.point, least.normal, least.depth, mesh.tree.numbers[at]};
         deepest = std::max(deepest, least.depth);
         if (least.depth > request.touching_depth) turn_outward(triangle, outward, solid, contact);
-        finding.contacts.push_back(contact);
+        contacts.add(contact);
+        ++count;
         return !request.stop.stop_requested();
     });
     // A solid that errs says how deep, but not whether.
@@ -133,16 +149,14 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
     if (finding.depth_kind == DepthKind::at_least) finding.depth = std::max(finding.depth, deepest);
     const bool hull = solid.solid.core == ConvexSolid::Core::points && solid.solid.radius == 0;
     if (finding.depth <= request.touching_depth && hull && mesh.tree.parts.any_closed) {
-        finding.depth = deepest_in_mesh(mesh, 0, middles_of(solid, finding.contacts));
+        finding.depth = deepest_in_mesh(mesh, 0, middles_of(solid, some_contact_points(mesh, solid, count)));
         finding.depth_kind = DepthKind::at_least;
     }
     if (finding.depth > request.touching_depth && finding.depth_kind == DepthKind::at_least &&
         is_solid(mesh, request.max_error)) {
         set_depth_of_mesh_and_solid(mesh, solid, request.max_error, finding);
     }
-    std::sort(finding.contacts.begin(), finding.contacts.end(), [](const Contact& a, const Contact& b) {
-        return a.depth != b.depth ? a.depth > b.depth : a.feature_a < b.feature_a;
-    });
+    contacts.give(finding);
 }
 
 }  // namespace octopair

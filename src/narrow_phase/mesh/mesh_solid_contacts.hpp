@@ -7,9 +7,10 @@
 //           also the middles between contacts.
 // Contacts  One for each triangle that meets the solid, with the shortest translation that separates the two. For a closed
 //           mesh the translation of the solid leads out of the mesh, never into it. Sorted by descending depth, then by the
-//           number of the triangle.
+//           number of the triangle. Of more than max_contacts, the first ones in this order are kept; no more are in memory.
 #pragma once
 
+#include <cstdint>
 #include <stop_token>
 
 #include "narrow_phase/mesh/mesh_convex.hpp"
@@ -18,6 +19,7 @@
 namespace octopair {
 
 struct MeshSolidRequest {
+    std::uint32_t max_contacts;   ///< maximum number of contacts in the result
     double touching_depth;        ///< a contact that is at most this deep only touches
     double max_error;             ///< of a depth that counts as the least (is_solid())
     const std::stop_token& stop;  ///< after a stop request the search ends soon; its result is then unspecified
