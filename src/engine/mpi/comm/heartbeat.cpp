@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/mpi/comm/backoff.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -65,7 +66,9 @@ void Heartbeat::check_silence(Clock::time_point now) {
 void Heartbeat::end() {
     const std::vector<std::uint64_t> sent = comm_.all_gather(sent_);
     if (comm_.rank() != 0) return;
-    while (received_ != sent) receive();
+    // Nothing can wake this rank but the messages, which only a probe sees.
+    const Backoff backoff;
+    for (receive(); received_ != sent; receive()) backoff();
 }
 
 }  // namespace octopair

@@ -26,7 +26,7 @@ public:
     void beat();
     /// Returns the message of the Error that beat() threw; none before.
     const std::optional<std::string>& lost() const { return lost_; }
-    /// Collective. Call when no beat() will follow. Afterwards no heartbeat is in flight. Throws: as beat().
+    /// Collective. Call when no beat() will follow. Afterwards no heartbeat is in flight.
     void end();
 
 private:

@@ -1,15 +1,14 @@
 #include "engine/mpi/leading/leading.hpp"
 
-#include <algorithm>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "base/stop.hpp"
 #include "base/timed.hpp"
 #include "engine/job_queue.hpp"
+#include "engine/mpi/comm/backoff.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/comm/heartbeat.hpp"
 #include "engine/mpi/leading/slice_distribution.hpp"
@@ -168,19 +167,6 @@ private:
     TicketLock ticket_lock_;
     Leader leader_;
     detail::JobQueue jobs_{*this};  // last member, so that it is destroyed first
-};
-
-/// Backoff of a waiting rank. The sleep grows with the time waited, up to 5 ms, a delay that a person does not notice.
-class Backoff {
-public:
-    void operator()() const {
-        constexpr std::chrono::milliseconds awake(1), longest(5);
-        const auto waited = std::chrono::steady_clock::now() - begun_;
-        if (waited > awake) std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(waited / 8, longest));
-    }
-
-private:
-    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };
 
 /// A rank other than rank 0.
