@@ -40,6 +40,13 @@ bool chooses_incremental(bool measured) {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+/// Returns how long an incremental step may take. A step that tuning forces has all the time that tests may need.
+std::chrono::steady_clock::duration time_limit(double full_seconds) {
+    if (tuning().scene.step != StepChoice::measured) return std::chrono::hours(1);
+    const auto seconds = std::chrono::duration<double>(abort_cost * full_seconds + abort_seconds);
+    return std::chrono::duration_cast<std::chrono::steady_clock::duration>(seconds);
+}
+
 }
 
 }  // namespace
@@ -216,10 +223,9 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
     if (!states_.is_last_step(SearchedStates::octree)) build_octree_of_last_step(stop);
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t changed = objects_.log().previous_states().size();
-    const auto time_limit = std::chrono::duration<double>(abort_cost * full_seconds_ + abort_seconds);
-    const ChangeSearch::Limits limits{
-        begin + std::chrono::duration_cast<std::chrono::steady_clock::duration>(time_limit),
-        objects_.table().size() / 2 + tuning().scene.visits, history_.size() + tuning().scene.changed_pairs, stop};
+    const ChangeSearch::Limits limits{begin + time_limit(full_seconds_),
+                                      objects_.table().size() / 2 + tuning().scene.visits,
+                                      history_.size() + tuning().scene.changed_pairs, stop};
     states_.forget(SearchedStates::octree);  // until everything below has succeeded
     try {
         search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
