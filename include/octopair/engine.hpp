@@ -6,6 +6,9 @@
 //           and the PairList empty.
 // Threads   Any thread may call an engine; its calls run one after another, in the order of arrival. Different engines are
 //           independent.
+// Callbacks A sink, a filter or a progress function that calls the engine which runs it, or waits for a job of that engine, gets an
+//           Error{usage} at once, on any thread: the engine runs one call at a time. Calls of other engines, and submit(), are
+//           allowed there.
 // Engines   Each engine derives from Engine: engine/threads, engine/processes, engine/mpi, service/client. The command chooses
 //           one in cli/engine_choice.cpp.
 // Cost      O((n log n + pairs) / k) time on k threads. The local engine needs at most 56 bytes per object besides input and
@@ -50,8 +53,8 @@ public:
 
     /// Finds the pairs of one set (`Objects{boxes}`), or of two (`Join{first, second}`), and stores them in `pairs`.
     /// Throws: Error{bad_input} with the index of the first invalid box; Error{cancelled} within 200 ms after a stop request;
-    /// Error{resource_limit}; Error{engine_failed}; Error{usage} if this kind of engine does not support the call (its header
-    /// says why).
+    /// Error{resource_limit}; Error{engine_failed}; Error{usage} in a callback of this engine, or if this kind of engine does not
+    /// support the call (its header says why).
     Summary find_pairs(const Input& input, PairList& pairs, const Options& options = {}, std::stop_token stop = {});
     /// Finds all pairs and passes them to `sink` in order, using at most `Options::buffer_bytes` for pairs. With an empty
     /// `sink` the pairs are only counted. Throws: as find_pairs().

@@ -5,8 +5,8 @@
 // Ownership A job owns its OwnedObjects until it has ended. BorrowedObjects, and all that a sink or progress function refers
 //           to, must stay alive and unchanged until then.
 // Errors    A job fails with the Error that the direct call would throw. Any other exception of a sink or progress function
-//           becomes Error{engine_failed} with the same message. Neither function may call the job's engine or wait for one
-//           of its jobs; submitting and cancelling is allowed.
+//           becomes Error{engine_failed} with the same message. In both functions, calls of the job's engine and waiting for its
+//           jobs throw Error{usage}; submitting and cancelling is allowed.
 // Threads   Several threads may call members of one Job at once, except assignment, move and destruction.
 // Cost      submit() moves the objects and takes a lock. The first job of an engine starts its thread.
 #pragma once
@@ -96,8 +96,7 @@ public:
     JobState state() const noexcept;
     double progress() const noexcept;  ///< fraction of the work that is done, 0 to 1; never decreases
 
-    /// Waits until the job has ended. Throws: Error{usage} in a sink or progress function of a job of the same engine, where
-    /// the wait could not end.
+    /// Waits until the job has ended. Throws: Error{usage} in a callback of the same engine, where the wait could not end.
     void wait() const;
     /// Waits until the job has ended, but at most for `time` and at most a year. Returns true if the job has ended.
     template <typename Rep, typename Period>

@@ -150,6 +150,7 @@ public:
     void add(std::unique_ptr<Filter> filter);
 
     /// Finds pairs with the engine, filters them and passes the collisions to `sink`; an empty sink: only counts them.
+    /// Filters and sinks that call `engine` get an Error{usage} (engine.hpp).
     /// `Options::limit` is the maximum number of collisions. `Options::verify` checks the engine's pairs, not the filters; if
     /// the limit ends the search early, only the pairs found so far. Throws: as Engine::stream_pairs().
     PipelineSummary run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options = {},

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/call_scope.hpp"
 #include "base/floating_point_scope.hpp"
 #include "base/memory.hpp"
 #include "engine/job_queue.hpp"
@@ -27,6 +28,15 @@ void check_set(const Objects& set, const char* name) {
     }
 }
 
+/// Returns a function that calls `progress`, on any thread, as a callback of `call`. Borrows both.
+ProgressSink of_call(const CallScope& call, const ProgressSink& progress) {
+    if (!progress) return {};
+    return [&](double done) {
+        const CallbackScope scope(call);
+        progress(done);
+    };
+}
+
 }  // namespace
 
 void detail::check_request(const detail::Request& request) {
@@ -47,14 +57,17 @@ void Engine::check(const detail::Request& request) const { detail::check_request
 
 unsigned Engine::verification_threads() const { return 0; }
 
-/// Runs one public call. Checks the request first and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty
+/// Runs one public call. Refuses calls from callbacks of this engine, whose turn would never come. Checks the request first and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty
 /// on failure. Sinks and progress callbacks also run in the default floating-point state.
 Summary Engine::call(const detail::Request& request, const detail::Output& output, std::stop_token stop) {
+    refuse_inside_call_of(this);
     const FloatingPointScope scope;
+    const CallScope own(this);
     if (output.list != nullptr) detail::storage_of(*output.list).reset();
     check(request);
     try {
-        const detail::Control control{stop, request.options.progress};
+        const ProgressSink progress = of_call(own, request.options.progress);
+        const detail::Control control{stop, progress};
         if (!request.options.verify) return run(request, output, control);
         return VerifiedCall(request, output, control).run(verification_threads(), [this](const auto&... call) {
             return run(call...);

@@ -19,7 +19,7 @@ JobQueue::~JobQueue() {
 void JobQueue::add(const std::shared_ptr<JobTask>& task) {
     const std::lock_guard lock(mutex_);
     if (!thread_.joinable()) start_thread();
-    task->belong_to(thread_.get_id());
+    task->belong_to(engine_, thread_.get_id());
     if (skipped_) return tasks_.add(task);
     tasks_.add(task, [](const auto& waiting) { return waiting->ended(); });
 }

@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "base/call_scope.hpp"
+
 namespace octopair::detail {
 
 namespace {
@@ -41,8 +43,9 @@ JobTask::JobTask(Work work) : work_(std::move(work)) {
     if (!work_->sink) pairs_.emplace();
 }
 
-void JobTask::belong_to(std::thread::id thread) {
+void JobTask::belong_to(const Engine& engine, std::thread::id thread) {
     const std::lock_guard lock(mutex_);
+    engine_ = &engine;
     queue_thread_ = thread;
 }
 
@@ -129,12 +132,17 @@ void JobTask::cancel() noexcept {
     }
 }
 
+/// Requires: the lock is held.
+void JobTask::check_can_end() const {
+    if (is_last()) return;
+    const std::thread::id here = std::this_thread::get_id();
+    if (here != queue_thread_ && here != holder_ && !CallScope::is_inside(engine_)) return;
+    throw Error(ErrorCode::usage, "deadlock: a callback waits for a job of the engine that runs it");
+}
+
 void JobTask::wait() const {
     std::unique_lock lock(mutex_);
-    const std::thread::id here = std::this_thread::get_id();
-    if (!is_last() && (here == queue_thread_ || here == holder_)) {
-        throw Error(ErrorCode::usage, "deadlock: a sink or progress callback waits for a job of its own engine");
-    }
+    check_can_end();
     ended_.wait(lock, [&] { return is_last(); });
 }
 

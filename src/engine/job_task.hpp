@@ -37,7 +37,7 @@ public:
     ~JobTask() = default;
 
     /// Stores the id of the queue's thread. Requires: called before that thread receives the task.
-    void belong_to(std::thread::id thread);
+    void belong_to(const Engine& engine, std::thread::id thread);
     /// Runs the task on the calling thread. Returns false if the task had already ended.
     /// Requires: called on the queue's thread.
     bool run(Engine& engine) noexcept;
@@ -58,7 +58,7 @@ private:
     struct Ending {
         JobState state;
         Summary summary = {};
-        std::optional<Error> error = {};  // absent if the job did not fail, or was out of memory
+        std::optional<Error> error = {};       // absent if the job did not fail, or was out of memory
     };
 
     bool hold(JobState state);
@@ -66,6 +66,7 @@ private:
     void report_progress(double done);
     static Ending failure() noexcept;
     void end(Ending ending) noexcept;
+    void check_can_end() const;
     void throw_unless_done() const;
     bool is_last() const { return state_ != JobState::queued && state_ != JobState::running; }
 
@@ -79,6 +80,7 @@ private:
     mutable std::condition_variable ended_;
     JobState state_ = JobState::queued;
     Ending ending_{};
+    const Engine* engine_ = nullptr;  // whose queue has the task; never accessed through this pointer
     std::thread::id queue_thread_;
     std::thread::id holder_;
 };

@@ -8,6 +8,7 @@
 #include <new>
 #include <utility>
 
+#include "base/call_scope.hpp"
 #include "base/control_group.hpp"
 #include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
@@ -53,6 +54,7 @@ private:
 class Flow {
 public:
     struct Setup {
+        const Engine* engine;  // null for a list of pairs
         const Filters& filters;
         unsigned threads;
         const CollisionSink& sink;
@@ -61,7 +63,8 @@ public:
     };
 
     Flow(const Setup& setup, PipelineSummary& summary)
-        : filters_(setup.filters),
+        : engine_(setup.engine),
+          filters_(setup.filters),
           sink_(setup.sink),
           summary_(summary),
           left_(setup.options.limit.value_or(~std::uint64_t(0))),
@@ -131,6 +134,7 @@ private:
 
     /// Applies all filters to a block. Runs on any thread.
     void apply(Block& block) const {
+        const CallScope callback(engine_, outer_);
         block.work.assign(filters_.size(), {});
         for (std::size_t i = 0; i < filters_.size(); ++i) {
             FilterWork& work = block.work[i];
@@ -146,6 +150,7 @@ private:
     }
 
     void deliver(Block& block) {
+        const CallScope callback(engine_, outer_);
         count(block);
         Batch& batch = block.batch;
         const bool too_many = batch.pairs().size() > left_;
@@ -173,6 +178,8 @@ private:
         if (!block.work.empty()) size_.learn(block.work[0].in, seconds);
     }
 
+    const Engine* engine_;
+    const CallScope* outer_ = CallScope::innermost();  // calls whose callback runs this pipeline
     const Filters& filters_;
     const CollisionSink& sink_;
     PipelineSummary& summary_;
@@ -214,21 +221,27 @@ struct Pipeline::State {
     unsigned threads;
     Filters filters = {};
 
+    /// Returns what a call needs. `engine`: that of the search, or null.
+    // NOLINTNEXTLINE(readability-function-size): an engine, and the parameters of Pipeline::run.
+    Flow::Setup setup(const Engine* engine, const CollisionSink& sink, const Options& options,
+                      std::stop_token stop) const {
+        return {engine, filters, threads, sink, options, std::move(stop)};
+    }
+
     /// Runs a call. `search(take, options)` passes all candidate pairs to `take`.
     template <typename Search>
-    PipelineSummary run(const CollisionSink& sink, const Options& options, const std::stop_token& stop,
-                        const Search& search) const {
+    PipelineSummary run(const Flow::Setup& setup, const Search& search) const {
         const FloatingPointScope scope;
         PipelineSummary summary;
         for (const auto& filter : filters) summary.filters.push_back({std::string(filter->name())});
         try {
             const Timed timed(summary.seconds);
-            if (filters.empty() && !sink) {
-                summary.search = search(PairSink{}, options);
+            if (filters.empty() && !setup.sink) {
+                summary.search = search(PairSink{}, setup.options);
                 summary.collisions = summary.search.pairs;
                 summary.truncated = summary.search.truncated;
             } else {
-                filter({filters, threads, sink, options, stop}, search, summary);
+                filter(setup, search, summary);
             }
         } catch (const std::bad_alloc&) {
             throw Error(ErrorCode::resource_limit, "out of memory");
@@ -277,14 +290,14 @@ void Pipeline::add(std::unique_ptr<Filter> filter) {
 // NOLINTNEXTLINE(readability-function-size): the public function has these five parameters.
 PipelineSummary Pipeline::run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options,
                               std::stop_token stop) {
-    return state_->run(sink, options, stop, [&](const PairSink& take, const Options& passed) {
+    return state_->run(state_->setup(&engine, sink, options, stop), [&](const PairSink& take, const Options& passed) {
         return engine.stream_pairs(input, take, passed, stop);
     });
 }
 
 PipelineSummary Pipeline::filter(const PairList& pairs, const CollisionSink& sink, const Options& options,
                                  std::stop_token stop) {
-    return state_->run(sink, options, stop,
+    return state_->run(state_->setup(nullptr, sink, options, stop),
                        [&](const PairSink& take, const Options& passed) { return stream_list(pairs, take, passed); });
 }
 

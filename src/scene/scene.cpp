@@ -1,9 +1,11 @@
 #include "octopair/scene.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 
+#include "base/call_scope.hpp"
 #include "base/floating_point_scope.hpp"
 #include "octopair/error.hpp"
 #include "scene/queries/query_rules.hpp"
@@ -20,6 +22,15 @@ void check_queries(std::span<const Query> queries, IsOne&& is_one) {
     throw Error(ErrorCode::bad_input, "query " + std::to_string(wrong - queries.begin()) + " of the call is not valid");
 }
 
+/// Returns `*state`. Throws: Error{usage} if this thread is in a callback of the scene.
+template <typename State>
+State& outside_callbacks(const std::unique_ptr<State>& state) {
+    if (!CallScope::is_inside(state.get())) return *state;
+    throw Error(ErrorCode::usage,
+                "a callback of the scene calls this scene, which is in the middle of a call: call it after the "
+                "callback has returned");
+}
+
 }  // namespace
 
 Scene::Scene(const SceneOptions& options) {
@@ -32,71 +43,71 @@ Scene::~Scene() = default;
 
 void Scene::add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits) {
     const FloatingPointScope scope;
-    state_->objects_to_change().add(objects, ids, traits);
+    outside_callbacks(state_).objects_to_change().add(objects, ids, traits);
 }
 
 void Scene::move(std::span<const ObjectId> ids, const Boxes& boxes) {
     const FloatingPointScope scope;
-    state_->objects_to_change().move(ids, boxes, false);
+    outside_callbacks(state_).objects_to_change().move(ids, boxes, false);
 }
 
 void Scene::sweep(std::span<const ObjectId> ids, const Boxes& boxes) {
     const FloatingPointScope scope;
-    state_->objects_to_change().move(ids, boxes, true);
+    outside_callbacks(state_).objects_to_change().move(ids, boxes, true);
 }
 
 void Scene::remove(std::span<const ObjectId> ids) {
     const FloatingPointScope scope;
-    state_->objects_to_change().remove(ids);
+    outside_callbacks(state_).objects_to_change().remove(ids);
 }
 
 void Scene::set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits) {
     const FloatingPointScope scope;
-    state_->objects_to_change().set_traits(ids, traits);
+    outside_callbacks(state_).objects_to_change().set_traits(ids, traits);
 }
 
 const StepResult& Scene::step(std::stop_token stop) {
     const FloatingPointScope scope;
-    return state_->step(stop);
+    return outside_callbacks(state_).step(stop);
 }
 
 const PairList& Scene::pairs() {
     const FloatingPointScope scope;
-    return state_->pairs();
+    return outside_callbacks(state_).pairs();
 }
 
 const PairList& Scene::persisting() {
     const FloatingPointScope scope;
-    return state_->persisting();
+    return outside_callbacks(state_).persisting();
 }
 
 const PairList& Scene::enlarged_pairs() {
     const FloatingPointScope scope;
-    return state_->searched_pairs();
+    return outside_callbacks(state_).searched_pairs();
 }
 
 void Scene::overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups) {
     const FloatingPointScope scope;
     check_queries(boxes, [](const Box3d& box) { return is_box(box); });
-    state_->queries().overlaps(state_->view(groups), boxes, answers);
+    outside_callbacks(state_).queries().overlaps(state_->view(groups), boxes, answers);
 }
 
 void Scene::overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups) {
     const FloatingPointScope scope;
     check_queries(spheres, is_sphere);
-    state_->queries().overlaps(state_->view(groups), spheres, answers);
+    outside_callbacks(state_).queries().overlaps(state_->view(groups), spheres, answers);
 }
 
 void Scene::first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups) {
     const FloatingPointScope scope;
     check_queries(rays, is_ray);
-    state_->queries().first_hits(state_->view(groups), rays, answers);
+    outside_callbacks(state_).queries().first_hits(state_->view(groups), rays, answers);
 }
 
 void Scene::all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups) {
     const FloatingPointScope scope;
     check_queries(rays, is_ray);
-    state_->queries().all_hits(state_->view(groups), rays, answers);
+    outside_callbacks(state_).queries().all_hits(state_->view(groups), rays, answers);
 }
 
 void Scene::nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
@@ -110,7 +121,7 @@ void Scene::nearest(std::span<const Box3d> places, const NearestLimits& limits, 
     check_queries(places, [](const Box3d& box) { return is_box(box); });
     if (!(limits.within >= 0))
         throw Error(ErrorCode::bad_input, "NearestLimits::within must be a number of at least 0");
-    state_->queries().nearest(state_->view(groups), places, limits, answers);
+    outside_callbacks(state_).queries().nearest(state_->view(groups), places, limits, answers);
 }
 
 std::vector<std::uint32_t> Scene::overlaps(const Box3d& box, std::uint32_t groups) {
@@ -155,12 +166,12 @@ Boxes Scene::boxes() const { return state_->objects().table().own_objects().boxe
 
 Verification Scene::verify(std::stop_token stop) {
     const FloatingPointScope scope;
-    return state_->verify(stop);
+    return outside_callbacks(state_).verify(stop);
 }
 
 Octants Scene::octants(std::stop_token stop) const {
     const FloatingPointScope scope;
-    return state_->octants(stop);
+    return outside_callbacks(state_).octants(stop);
 }
 
 ObjectId Scene::id(std::uint32_t index) const { return state_->objects().id(index); }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -59,6 +60,7 @@ public:
 
 private:
     // Defined in scene_step.cpp.
+    std::function<void(std::uint64_t)> room_of(const SceneOptions& options);
     /// Returns the history of the pairs that the scene shows.
     PairHistory& shown() { return exact_ ? exact_->history() : history_; }
     bool search(const std::stop_token& stop);

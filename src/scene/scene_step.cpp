@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <utility>
 
+#include "base/call_scope.hpp"
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
@@ -38,8 +40,6 @@ bool chooses_incremental(bool measured) {
     return choice == StepChoice::measured ? measured : choice == StepChoice::incremental;
 }
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 /// Returns how long an incremental step may take. A step that tuning forces has all the time that tests may need.
 std::chrono::steady_clock::duration time_limit(double full_seconds) {
     if (tuning().scene.step != StepChoice::measured) return std::chrono::hours(1);
@@ -47,9 +47,20 @@ std::chrono::steady_clock::duration time_limit(double full_seconds) {
     return std::chrono::duration_cast<std::chrono::steady_clock::duration>(seconds);
 }
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }  // namespace
+
+/// Returns a function that calls SceneOptions::room_for_pairs, on any thread, as a callback of `scene`.
+std::function<void(std::uint64_t)> Scene::State::room_of(const SceneOptions& options) {
+    if (!options.room_for_pairs) return {};
+    return [this, room = options.room_for_pairs](std::uint64_t bytes) {
+        const CallScope callback(this);
+        room(bytes);
+    };
+}
 
 Scene::State::State(const SceneOptions& options)
     : margin_(options.margin),
@@ -57,8 +68,8 @@ Scene::State::State(const SceneOptions& options)
       team_(options.threads),
       search_(team_),
       queries_(team_),
-      history_(options.room_for_pairs) {
-    if (options.slack > 0) exact_.emplace(team_, options.room_for_pairs);
+      history_(room_of(options)) {
+    if (options.slack > 0) exact_.emplace(team_, room_of(options));
     if (options.recording.empty()) return;
     recorder_ = std::make_unique<Recorder>(options);
     objects_.record_to(recorder_.get());

@@ -4,11 +4,13 @@
 #include <limits>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"
+#include "support/reentry.hpp"
 
 namespace octopair::test {
 namespace {
@@ -70,6 +72,15 @@ TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
     expect_on_all(ErrorCode::bad_input, "second set: object " + std::to_string(of_last) + ": min x", [&] {
         (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
     });
+}
+
+TEST_F(RankErrors, RefuseCallsInTheirSinks) {
+    bool tried = false;
+    (void)engine_->stream_pairs(own(), [&](std::span<const Pair>) {
+        if (!std::exchange(tried, true)) test::expect_calls_refused(*engine_);
+    });
+    EXPECT_GT(test::largest(tried ? 1 : 0), 0u);
+    EXPECT_EQ(engine_->count_pairs(own()), engine_->count_pairs(own()));
 }
 
 TEST_F(RankErrors, RefuseToVerify) {

@@ -6,6 +6,7 @@
 
 #include "octopair/octopair.hpp"
 #include "pipeline/flow.hpp"
+#include "support/reentry.hpp"
 
 namespace octopair::test {
 namespace {
@@ -37,6 +38,24 @@ INSTANTIATE_TEST_SUITE_P(, Endings,
                                            Ending{2, Order::octal}, Ending{2, Order::ascending},
                                            Ending{7, Order::octal}),
                          ending_name_of);
+
+TEST_P(Endings, CallsOfTheEngineInFiltersAndSinksAreRefused) {
+    const std::vector<Box3f> few = boxes_in_a_row(3);
+    std::atomic<int> filtered = 0, taken = 0;
+    Pipeline pipeline(GetParam().threads);
+    pipeline.add(make_filter("calling", [&](Pair) {
+        if (filtered++ % 1000 == 0) expect_calls_refused(*engine_);
+        return true;
+    }));
+    const CollisionSink sink = [&](const Batch&) {
+        if (taken++ % 1000 == 0) expect_calls_refused(*engine_);
+        EXPECT_EQ(find_pairs(few).size(), 2u);  // of another engine
+    };
+    (void)pipeline.run(*engine_, all_of(boxes_), sink, options());
+    EXPECT_GT(filtered, 0);
+    EXPECT_GT(taken, 0);
+    EXPECT_EQ(engine_->count_pairs(all_of(few)), 2u);
+}
 
 /// Tests that the output before an exception does not depend on threads.
 TEST_P(Endings, FiltersThrowWhereTheirPairIs) {

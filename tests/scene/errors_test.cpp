@@ -180,6 +180,35 @@ TEST(Scene, AStepThatHasNoRoomForItsPairsCanBeRepeated) {
     }
 }
 
+TEST(Scene, ItsCallbackCannotCallIt) {
+    unsigned refused = 0;
+    Scene* scene = nullptr;
+    SceneOptions options;
+    options.threads = 3;
+    options.room_for_pairs = [&](std::uint64_t) {
+        for (const auto& call :
+             {std::function([&] { (void)scene->step(); }), std::function([&] { (void)scene->pairs(); }),
+              std::function([&] { scene->remove({}); }), std::function([&] {
+                  (void)scene->overlaps(Box3d{{0, 0, 0}, {1, 1, 1}});
+              })}) {
+            try {
+                call();
+                ADD_FAILURE() << "the call succeeded";
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ErrorCode::usage);
+                ++refused;
+            }
+        }
+        EXPECT_EQ(scene->size(), 100u);
+    };
+    Scene owner(options);
+    scene = &owner;
+    std::vector<ObjectId> ids(100);
+    scene->add(Objects{boxes_of(std::vector<Box3f>(ids.size(), unit))}, ids);
+    EXPECT_EQ(scene->step().pairs(), 4950u);
+    EXPECT_GE(refused, 4u);
+}
+
 TEST(Scene, StepsThatHaveNoRoomLeaveWhatPersists) {
     Room room(100'000'000);
     Scene scene({.threads = 1, .room_for_pairs = std::ref(room)});

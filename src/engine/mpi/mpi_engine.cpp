@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/call_scope.hpp"
 #include "base/floating_point_scope.hpp"
 #include "engine/job_queue.hpp"
 #include "engine/mpi/comm/communicator.hpp"
@@ -42,6 +43,8 @@ public:
         : comm_(comm), search_(comm_, check_arrangements_agree(comm_, options)) {}
 
     void gather(PairList& pairs) {
+        refuse_inside_call_of(this);
+        const CallScope own(this);
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
         PairList all;
@@ -51,6 +54,8 @@ public:
 
     // NOLINTNEXTLINE(readability-function-size): objects, output, control.
     Summary find(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control) {
+        refuse_inside_call_of(this);
+        const CallScope own(this);
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
         return search_.run(request, indexed, control);
