@@ -42,6 +42,9 @@ typedef enum octopair_status {
 
 /* Returns the message of the last failed call of this thread; "" if there was none. Valid until the thread's next call. */
 OCTOPAIR_API const char *octopair_error_message(void);
+/* Returns 1 if that failure is about one object, query or id, and stores its index and its set: 1 for the second set of a join, otherwise
+ * 0. Returns 0 otherwise. Either pointer may be null. */
+OCTOPAIR_API int octopair_error_place(uint64_t *index, uint32_t *set);
 /* Returns the version of the library, for example "0.2.0". Static text. */
 OCTOPAIR_API const char *octopair_version(void);
 

@@ -2,6 +2,7 @@
 #include "call.hpp"
 
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -16,9 +17,11 @@ static_assert(sizeof(octopair_pair) == sizeof(Pair) && alignof(octopair_pair) ==
 // A fixed array: storing the message of a failed allocation must not allocate.
 constexpr std::size_t longest_message = 1024;
 thread_local char message[longest_message] = "";
+thread_local std::optional<ErrorPlace> place;  // of the error with this message
 
-octopair_status failed(ErrorCode code, const char* text) noexcept {
+octopair_status failed(ErrorCode code, const char* text, const std::optional<ErrorPlace>& where = {}) noexcept {
     std::strncpy(message, text, longest_message - 1);
+    place = where;
     return octopair_status(int(code) + 1);
 }
 
@@ -30,7 +33,7 @@ octopair_status status_of_exception() noexcept {
     try {
         throw;
     } catch (const Error& error) {
-        return failed(error.code(), error.what());
+        return failed(error.code(), error.what(), error.place());
     } catch (const std::bad_alloc&) {
         return failed(ErrorCode::resource_limit, "out of memory");
     } catch (const std::length_error&) {
@@ -105,6 +108,14 @@ octopair_summary summary_of(const Summary& summary) {
 }  // namespace octopair::c
 
 const char* octopair_error_message(void) { return octopair::c::message; }
+
+int octopair_error_place(uint64_t* index, uint32_t* set) {
+    const auto& place = octopair::c::place;
+    if (!place) return 0;
+    if (index != nullptr) *index = place->index;
+    if (set != nullptr) *set = place->set;
+    return 1;
+}
 
 const char* octopair_version(void) { return OCTOPAIR_VERSION; }
 

@@ -2,10 +2,12 @@
 //
 // - Every failure of a public call throws an `Error`.
 // - Its code is the kind of failure. Its message, one line, says what is wrong and where (file, object, value).
+// - An error about one object, query or id also has its index (Error::place()).
 // - Public calls turn std::bad_alloc into Error{resource_limit}, unless their header says otherwise.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -20,13 +22,40 @@ enum class ErrorCode : std::uint8_t {
     cancelled,       ///< the caller requested a stop
 };
 
+/// The object, query or id of a call that an error is about.
+struct ErrorPlace {
+    /// Index in its set, as the message has it: of an object, a query, an id of the call, or a triangle.
+    std::uint64_t index = 0;
+    unsigned set = 0;                         ///< 1: the second set of a join; otherwise 0
+    std::optional<std::uint64_t> frame = {};  ///< of a moving scene; absent if the input has no frames
+};
+
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
     ErrorCode code() const noexcept { return code_; }
+    /// Returns what the error is about; nothing if it is not about one object, query or id. A copy of an Error has no place: to
+    /// keep it, store a std::exception_ptr.
+    std::optional<ErrorPlace> place() const noexcept;
 
 private:
     ErrorCode code_;
 };
+
+/// An Error about one object, query or id. To handle errors, catch Error.
+class PlacedError : public Error {
+public:
+    PlacedError(ErrorCode code, const std::string& message, const ErrorPlace& place)
+        : Error(code, message), place_(place) {}
+    const ErrorPlace& where() const noexcept { return place_; }
+
+private:
+    ErrorPlace place_;
+};
+
+inline std::optional<ErrorPlace> Error::place() const noexcept {
+    const auto* placed = dynamic_cast<const PlacedError*>(this);
+    return placed == nullptr ? std::nullopt : std::optional(placed->where());
+}
 
 }  // namespace octopair

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from typing import Optional
 
 __all__ = ["Error", "InputError", "InputTypeError", "UsageError", "FileError", "ResourceLimitError", "EngineError",
            "CancelledError"]
-
-_POSITION = re.compile(r"\b(?:object|query|triangle|id) (\d+)\b")
 
 
 class Error(Exception):
@@ -20,19 +17,19 @@ class Error(Exception):
         Kind of the failure: ``"usage"``, ``"bad_input"``, ``"io_failed"``, ``"resource_limit"``, ``"engine_failed"`` or
         ``"cancelled"``.
     index : int or None
-        Index of the object or query that is invalid, if the message names one. In a call with two sets, the message also says which
-        set.
+        Index of the object, query, triangle or id that is invalid, if the error is about one.
+    set : int or None
+        Set of this object: 1 for the second set of a call with two sets, otherwise 0.
     """
 
     code: str = "engine_failed"
     index: Optional[int] = None
+    set: Optional[int] = None
 
-    def __init__(self, message: str = "", index: Optional[int] = None) -> None:
+    def __init__(self, message: str = "", index: Optional[int] = None, of_set: Optional[int] = None) -> None:
         super().__init__(message)
-        if index is None:
-            found = _POSITION.search(message)
-            index = int(found[1]) if found else None
         self.index = index
+        self.set = 0 if of_set is None and index is not None else of_set
 
 
 class UsageError(Error, ValueError):
@@ -81,6 +78,6 @@ class CancelledError(Error):
 _TABLE = (UsageError, InputError, FileError, ResourceLimitError, EngineError, CancelledError)
 
 
-def make(code: int, message: str) -> Error:
-    """Returns the exception for a code of the C++ library."""
-    return _TABLE[code](message)
+def make(code: int, message: str, index: Optional[int] = None, of_set: Optional[int] = None) -> Error:
+    """Returns the exception for an error of the C++ library."""
+    return _TABLE[code](message, index, of_set)

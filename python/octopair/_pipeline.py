@@ -441,7 +441,7 @@ def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_sha
     numbers = face_array(faces)
     if numbers.size and numbers.max() >= len(corners):
         wrong = int(np.flatnonzero((numbers >= len(corners)).any(axis=1))[0])
-        raise InputError(f"faces: triangle {wrong} has the vertex {numbers[wrong].max()} of {len(corners)}")
+        raise InputError(f"faces: triangle {wrong} has the vertex {numbers[wrong].max()} of {len(corners)}", wrong)
     triangles = np.ascontiguousarray(corners[numbers])
     pipeline = Pipeline().triangles(triangles, adjacent=adjacent, margin=margin, features=features, tolerance=tolerance)
     found = pipeline.run(_core.triangle_boxes(triangles), margin=margin, limit=limit, engine=engine, progress=progress)

@@ -119,7 +119,7 @@ def pose_array(poses: Any, name: str = "poses") -> Array:
         raise InputError(f"{name}: the shape is {array.shape}; it must be (n, 3, 4) or (n, 4, 4)")
     if array.shape[1] == 4 and not np.array_equal(array[:, 3], np.broadcast_to([0, 0, 0, 1], (len(array), 4))):
         wrong = int(np.flatnonzero((array[:, 3] != [0, 0, 0, 1]).any(axis=1))[0])
-        raise InputError(f"{name}: object {wrong}: the last row of the matrix is {array[wrong, 3]}, not [0 0 0 1]")
+        raise InputError(f"{name}: object {wrong}: the last row of the matrix is {array[wrong, 3]}, not [0 0 0 1]", wrong)
     found = np.array(_arrays.numbers(array[:, :3], name, (None, 3, 4), copy=True))
     found.flags.writeable = False
     return found

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include "octopair/error.hpp"
@@ -13,8 +14,10 @@ namespace py = pybind11;
 namespace {
 
 /// Sets the current exception of Python. `octopair._errors.make` chooses the class by the code.
-void raise(ErrorCode code, const char* message) {
-    const py::object error = py::module_::import("octopair._errors").attr("make")(int(code), message);
+void raise(ErrorCode code, const char* message, const std::optional<ErrorPlace>& place = {}) {
+    const py::object index = place ? py::object(py::int_(place->index)) : py::none();
+    const py::object set = place ? py::object(py::int_(place->set)) : py::none();
+    const py::object error = py::module_::import("octopair._errors").attr("make")(int(code), message, index, set);
     PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }
 
@@ -25,7 +28,7 @@ void register_errors() {
         try {
             if (thrown) std::rethrow_exception(thrown);
         } catch (const Error& error) {
-            raise(error.code(), error.what());
+            raise(error.code(), error.what(), error.place());
         } catch (const std::bad_alloc&) {
             raise(ErrorCode::resource_limit, "out of memory");
         } catch (const std::system_error& error) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -36,15 +37,16 @@ py::tuple columns_of(const Answers<Answer>& answers, double Answer::*number) {
     return py::make_tuple(indices, numbers, offsets_of(answers.ends));
 }
 
-/// Returns the error of a batch with the number of the query in all queries.
-Error renumbered(const Error& error, std::size_t begin) {
-    static const std::string word = "query ";
+/// Throws the error of a batch with the number of the query in all queries. Requires: called in a catch block.
+[[noreturn]] void throw_renumbered(const Error& error, std::size_t begin) {
+    std::optional<ErrorPlace> place = error.place();
+    if (begin == 0 || !place) throw;
+    const std::string in_batch = "query " + std::to_string(place->index);
+    place->index += begin;
     std::string text = error.what();
-    const std::size_t at = text.find(word);
-    if (begin == 0 || at == std::string::npos) return error;
-    std::size_t digits = 0;
-    const std::size_t query = std::stoull(text.substr(at + word.size()), &digits);
-    return {error.code(), text.replace(at + word.size(), digits, std::to_string(begin + query))};
+    const std::size_t at = text.find(in_batch);
+    if (at != std::string::npos) text.replace(at, in_batch.size(), "query " + std::to_string(place->index));
+    throw PlacedError(error.code(), text, *place);
 }
 
 class LocalScene : public PythonScene<Scene> {
@@ -118,7 +120,7 @@ private:
             try {
                 run([&] { find(queries.subspan(begin, end - begin), part); });
             } catch (const Error& error) {
-                throw renumbered(error, begin);
+                throw_renumbered(error, begin);
             }
             const auto time = Clock::now() - start;
             if (time < std::chrono::milliseconds(5)) batch_size *= 4;

@@ -261,7 +261,11 @@ std::optional<std::string> BoxSource::fault(std::size_t position, const SetBegin
 
 void BoxSource::refuse(std::size_t begin, const SetBegins& begins) const {
     for (std::size_t i = begin; i < size(); ++i) {
-        if (const auto found = fault(i, begins)) throw Error(ErrorCode::bad_input, *found);
+        if (const auto found = fault(i, begins)) {
+            const bool in_first = i < first_size_;
+            const std::uint64_t index = in_first ? begins.first + i : begins.second + (i - first_size_);
+            throw PlacedError(ErrorCode::bad_input, *found, {.index = index, .set = in_first ? 0u : 1u, .frame = {}});
+        }
     }
     throw_object_changed();
 }

@@ -88,7 +88,10 @@ JobTask::Ending JobTask::failure() noexcept {
         try {
             throw;
         } catch (const Error& error) {
-            return {error.code() == ErrorCode::cancelled ? JobState::cancelled : JobState::failed, {}, error};
+            return {error.code() == ErrorCode::cancelled ? JobState::cancelled : JobState::failed,
+                    {},
+                    error,
+                    error.place()};
         } catch (const std::bad_alloc&) {
             return {JobState::failed};
         } catch (const std::exception& error) {
@@ -158,6 +161,7 @@ void JobTask::wait_unless_holder() const {
 
 void JobTask::throw_unless_done() const {
     if (state_ == JobState::done) return;
+    if (ending_.error && ending_.place) throw PlacedError(ending_.error->code(), ending_.error->what(), *ending_.place);
     if (ending_.error) throw Error(*ending_.error);
     if (state_ == JobState::cancelled) throw Error(ErrorCode::cancelled, "cancelled");
     throw Error(ErrorCode::resource_limit, "out of memory");

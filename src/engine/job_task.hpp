@@ -59,6 +59,7 @@ private:
         JobState state;
         Summary summary = {};
         std::optional<Error> error = {};       // absent if the job did not fail, or was out of memory
+        std::optional<ErrorPlace> place = {};  // of the error
     };
 
     bool hold(JobState state);

@@ -102,7 +102,13 @@ void check_object(const ShapedObjects& objects, std::size_t i) {
 void check(const ShapedObjects& objects) {
     const FloatingPointScope scope;
     check_sizes(objects);
-    for (std::size_t i = 0; i < objects.size(); ++i) check_object(objects, i);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        try {
+            check_object(objects, i);
+        } catch (const Error& error) {
+            throw PlacedError(error.code(), error.what(), {.index = i, .set = 0, .frame = {}});
+        }
+    }
 }
 
 }  // namespace octopair

@@ -79,8 +79,10 @@ void check_shape(const shape::Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (const std::uint32_t vertex : mesh.triangles[i]) {
             if (vertex < mesh.vertices.size()) continue;
-            refuse_geometry("triangle " + std::to_string(i) + " of a mesh has vertex " + std::to_string(vertex) +
-                            " of " + std::to_string(mesh.vertices.size()));
+            throw PlacedError(ErrorCode::bad_input,
+                              "triangle " + std::to_string(i) + " of a mesh has vertex " + std::to_string(vertex) +
+                                  " of " + std::to_string(mesh.vertices.size()),
+                              {.index = i, .set = 0, .frame = {}});
         }
     }
 }

@@ -95,8 +95,9 @@ std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<
                        : swept_box(shape, *Motion::between(objects.poses[i], objects.end_poses[i]));
         for (int axis = 0; axis < 3; ++axis) {
             if (std::isfinite(boxes[i].min[axis]) && std::isfinite(boxes[i].max[axis])) continue;
-            throw Error(ErrorCode::bad_input,
-                        "object " + std::to_string(i) + ": its box is beyond the range of float64");
+            throw PlacedError(ErrorCode::bad_input,
+                              "object " + std::to_string(i) + ": its box is beyond the range of float64",
+                              {.index = i, .set = 0, .frame = {}});
         }
         if (!bounds) bounds = boxes[i];
         unite(*bounds, boxes[i]);

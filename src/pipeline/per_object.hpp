@@ -18,10 +18,10 @@ class PerObject {
 public:
     /// `what` names the value in error messages. Borrows the spans.
     PerObject(const char* what, std::span<const Value> first, std::optional<std::span<const Value>> second)
-        : what_(what), first_(first), second_(second.value_or(first)) {}
+        : what_(what), first_(first), second_(second.value_or(first)), in_join_(second.has_value()) {}
 
-    const Value& first(std::uint32_t a) const { return at(first_, a); }
-    const Value& second(std::uint32_t b) const { return at(second_, b); }
+    const Value& first(std::uint32_t a) const { return at(first_, a, 0); }
+    const Value& second(std::uint32_t b) const { return at(second_, b, in_join_ ? 1 : 0); }
 
     /// Throws: Error{bad_input} if an object of the pair has no value.
     void check(Pair pair) const { (void)first(pair.a), (void)second(pair.b); }
@@ -29,17 +29,20 @@ public:
     std::span<const Value> all_second() const { return second_; }
 
 private:
-    const Value& at(std::span<const Value> values, std::uint32_t object) const {
-        if (object >= values.size()) refuse(values.size(), object);
+    const Value& at(std::span<const Value> values, std::uint32_t object, unsigned set) const {
+        if (object >= values.size()) refuse(values.size(), {.index = object, .set = set, .frame = {}});
         return values[object];
     }
-    [[noreturn]] void refuse(std::size_t size, std::uint32_t object) const {
-        throw Error(ErrorCode::bad_input, "object " + std::to_string(object) + " has no " + what_ +
-                                              ": values were given for " + std::to_string(size) + " objects");
+    [[noreturn]] void refuse(std::size_t size, const ErrorPlace& object) const {
+        throw PlacedError(ErrorCode::bad_input,
+                          "object " + std::to_string(object.index) + " has no " + what_ + ": values were given for " +
+                              std::to_string(size) + " objects",
+                          object);
     }
 
     const char* what_;
     std::span<const Value> first_, second_;
+    bool in_join_;
 };
 
 }  // namespace octopair

@@ -44,8 +44,9 @@ void for_each_part(std::size_t triangles, unsigned threads, const Body& body) {
 
 [[noreturn]] void refuse_not_finite(std::span<const Triangle3d> triangles) {
     const auto wrong = std::find_if_not(triangles.begin(), triangles.end(), is_finite);
-    throw Error(ErrorCode::bad_input,
-                "triangle " + std::to_string(wrong - triangles.begin()) + " has a corner that is not finite");
+    const auto index = std::uint64_t(wrong - triangles.begin());
+    throw PlacedError(ErrorCode::bad_input, "triangle " + std::to_string(index) + " has a corner that is not finite",
+                      {.index = index, .set = 0, .frame = {}});
 }
 
 void check(const TriangleSet& set, unsigned threads) {

@@ -19,7 +19,9 @@ template <typename Query, typename IsOne>
 void check_queries(std::span<const Query> queries, IsOne&& is_one) {
     const auto wrong = std::find_if_not(queries.begin(), queries.end(), is_one);
     if (wrong == queries.end()) return;
-    throw Error(ErrorCode::bad_input, "query " + std::to_string(wrong - queries.begin()) + " of the call is not valid");
+    const auto index = std::uint64_t(wrong - queries.begin());
+    throw PlacedError(ErrorCode::bad_input, "query " + std::to_string(index) + " of the call is not valid",
+                      {.index = index, .set = 0, .frame = {}});
 }
 
 /// Returns `*state`. Throws: Error{usage} if this thread is in a callback of the scene.

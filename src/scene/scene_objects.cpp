@@ -13,8 +13,10 @@ namespace {
 
 constexpr std::size_t ahead = 24;  // objects of a call that are prefetched before they are processed
 
-Error fault(std::size_t position, const std::string& what) {
-    return {ErrorCode::bad_input, "object " + std::to_string(position) + " of the call: " + what};
+PlacedError fault(std::size_t position, const std::string& what) {
+    return {ErrorCode::bad_input,
+            "object " + std::to_string(position) + " of the call: " + what,
+            {.index = position, .set = 0, .frame = {}}};
 }
 
 std::uint64_t size_of(const Boxes& boxes) {
@@ -191,9 +193,10 @@ void SceneObjects::check_removal(std::span<const ObjectId> ids) {
     std::sort(sorted_.begin(), sorted_.end());
     const auto twice = std::adjacent_find(sorted_.begin(), sorted_.end());
     if (twice != sorted_.end()) {
-        throw Error(ErrorCode::bad_input, "id " + std::to_string(twice->index) + "." +
-                                              std::to_string(twice->generation) +
-                                              " is listed twice; list each object to remove once");
+        throw PlacedError(ErrorCode::bad_input,
+                          "id " + std::to_string(twice->index) + "." + std::to_string(twice->generation) +
+                              " is listed twice; list each object to remove once",
+                          {.index = twice->index, .set = 0, .frame = {}});
     }
 }
 

@@ -164,6 +164,9 @@ static void test_engine(const char* kind) {
     numbers[6 * 7] = NAN;
     CHECK(octopair_find_pairs(engine, &first, NULL, NULL, pairs, NULL) == OCTOPAIR_BAD_INPUT);
     CHECK(strstr(octopair_error_message(), "object 7") != NULL && octopair_pairs_count(pairs) == 0);
+    uint64_t index = 0;
+    uint32_t set = 9;
+    CHECK(octopair_error_place(&index, &set) == 1 && index == 7 && set == 0);
     CHECK_OK(octopair_job_submit(engine, &first, NULL, NULL, &job));
     CHECK(octopair_job_take_pairs(job, pairs, NULL) == OCTOPAIR_BAD_INPUT);
     CHECK(octopair_job_get_state(job) == OCTOPAIR_JOB_FAILED);

@@ -7,6 +7,7 @@
 
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
+#include "support/error_place.hpp"
 
 namespace octopair::test {
 namespace {
@@ -170,6 +171,10 @@ TEST_P(EngineErrors, WhatASinkThrowsReachesTheCaller) {
         EXPECT_EQ(list_.size(), 0u);
         EXPECT_EQ(engine_->count_pairs(Objects{std::span<const Box3f>(good_)}), 1u);
     }
+}
+
+TEST(EngineErrorPlaces, AreIndexAndSet) {
+    for (const unsigned threads : {1u, 3u}) expect_places_of_errors(*make_local_engine(threads));
 }
 
 }  // namespace

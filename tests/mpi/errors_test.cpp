@@ -10,6 +10,7 @@
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 #include "support/compare.hpp"
+#include "support/error_place.hpp"
 #include "support/reentry.hpp"
 
 namespace octopair::test {
@@ -72,6 +73,12 @@ TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
     expect_on_all(ErrorCode::bad_input, "second set: object " + std::to_string(of_last) + ": min x", [&] {
         (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
     });
+    test::expect_place([&] { (void)engine_->count_pairs({std::span<const Box3f>(some), {}}); }, of_last, 0);
+    test::expect_place(
+        [&] {
+            (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
+        },
+        of_last, 1);
 }
 
 TEST_F(RankErrors, RefuseCallsInTheirSinks) {

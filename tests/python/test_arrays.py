@@ -109,10 +109,16 @@ def test_names_the_invalid_box(value, words):
     boxes[37, 4] = value
     with pytest.raises(ValueError) as caught:
         op.find_pairs(boxes)
-    assert caught.value.index == 37 and words in str(caught.value)
+    assert (caught.value.index, caught.value.set) == (37, 0) and words in str(caught.value)
     with pytest.raises(op.InputError) as caught:
         op.find_pairs(random_boxes(5), against=boxes)
-    assert caught.value.index == 37 and "second set" in str(caught.value)
+    assert (caught.value.index, caught.value.set) == (37, 1) and "second set" in str(caught.value)
+
+
+def test_no_number_of_a_message_is_taken_for_an_index(tmp_path):
+    with pytest.raises(op.FileError) as caught:
+        op.Scene(recording=str(tmp_path / "object 7" / "scene.rec"))
+    assert "object 7" in str(caught.value) and caught.value.index is None
 
 
 @pytest.mark.parametrize("arguments, kind", [

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "octopair/octopair.hpp"
+#include "support/error_place.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
@@ -251,6 +252,18 @@ TEST(Scene, VeryManyPairsBeginWhereLittleMoves) {
     const StepResult& step = scene.step();
     EXPECT_EQ(step.began.size(), together * (together - 1) / 2 - 45);
     EXPECT_EQ(scene.pairs().size(), together * (together - 1) / 2);
+}
+
+TEST(Scene, ErrorsHaveTheirPlaces) {
+    Scene scene;
+    std::vector<ObjectId> ids(3);
+    scene.add(Objects{boxes_of({unit, unit, unit})}, ids);
+    const Box3f bad = {{0, 0, 0}, {-1, 1, 1}};
+    expect_place([&] { scene.move(ids, boxes_of({unit, unit, bad})); }, 2, 0);
+    Answers<std::uint32_t> answers;
+    const std::vector<Sphere> spheres = {{{0, 0, 0}, 1}, {{0, 0, 0}, -1}};
+    expect_place([&] { scene.overlaps(spheres, answers); }, 1, 0);
+    EXPECT_FALSE(place_of_error([&] { scene.move(ids, boxes_of({unit})); }));
 }
 
 }  // namespace

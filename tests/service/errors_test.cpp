@@ -7,6 +7,7 @@
 #include "processes/asked.hpp"
 #include "service/gate.hpp"
 #include "service/served.hpp"
+#include "support/error_place.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
@@ -112,6 +113,8 @@ TEST(ServedFailures, DoNotNameFoldersOfTheServer) {
                        }),
               "worker processes end at their start, with a signal: octopair-worker");
 }
+
+TEST_F(ServedErrors, HaveTheirPlaces) { expect_places_of_errors(*remote_); }
 
 }  // namespace
 }  // namespace octopair::test

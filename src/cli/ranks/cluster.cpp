@@ -56,7 +56,9 @@ void Cluster::joint(const std::function<void()>& part) {
     }
 }
 
-void Cluster::refuse_object(std::uint64_t position, const std::string& message) { throw BadObject{position, message}; }
+void Cluster::refuse_object(std::uint64_t position, const std::string& message) {
+    throw BadObject{position, message, {}};
+}
 
 void Cluster::require_same(const Facts& own) {
     const std::string bytes = packed(own);

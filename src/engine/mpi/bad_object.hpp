@@ -21,7 +21,7 @@ template <typename Position, typename NamedFrom>
     try {
         source.refuse(number, named_from(number));
     } catch (const Error& error) {
-        throw BadObject{std::uint64_t(position(number)), error.what()};
+        throw BadObject{std::uint64_t(position(number)), error.what(), error.place()};
     }
 }
 

@@ -18,13 +18,20 @@ v1::Failure failure_of(const Error& error) {
         failure.set_limit(limit->name());
         failure.set_allowed(limit->allowed());
     }
+    if (const auto place = error.place()) {
+        failure.mutable_place()->set_index(place->index);
+        failure.mutable_place()->set_set(place->set);
+    }
     return failure;
 }
 
 void throw_failure(const v1::Failure& failure) {
     if (!failure.limit().empty()) throw LimitError(failure.limit(), failure.allowed(), failure.message());
     const bool known = failure.code() >= 0 && std::size_t(failure.code()) < error_code_table.size();
-    throw Error(known ? ErrorCode(failure.code()) : ErrorCode::engine_failed, failure.message());
+    const ErrorCode code = known ? ErrorCode(failure.code()) : ErrorCode::engine_failed;
+    if (!failure.has_place()) throw Error(code, failure.message());
+    const ErrorPlace place{.index = failure.place().index(), .set = failure.place().set(), .frame = {}};
+    throw PlacedError(code, failure.message(), place);
 }
 
 grpc::Status status_of(const v1::Failure& failure) {

@@ -34,12 +34,16 @@ namespace {
 /// `foreign`: an exception that is no Error.
 enum class OutcomeKind : std::uint8_t { bad_object, error, foreign, stopped, good };
 
+constexpr std::int32_t no_set = -1;
+
 /// Outcome of a part on one rank, without its message. Sent to all ranks.
 struct OutcomeHeader {
     OutcomeKind kind = OutcomeKind::good;
     ErrorCode code = ErrorCode::engine_failed;
     std::uint32_t length = 0;    // length of the message
     std::uint64_t position = 0;  // position of a bad object
+    std::uint64_t index = 0;     // of its ErrorPlace
+    std::int32_t set = no_set;   // of its ErrorPlace; no_set: it has none
 };
 
 bool precedes(const OutcomeHeader& a, const OutcomeHeader& b) {
@@ -59,7 +63,9 @@ Agreement::Outcome Agreement::outcome_of(const std::function<void()>& part) {
         part();
         return {};
     } catch (const BadObject& bad) {
-        return {{OutcomeKind::bad_object, ErrorCode::bad_input, 0, bad.position}, bad.message};
+        OutcomeHeader header{OutcomeKind::bad_object, ErrorCode::bad_input, 0, bad.position};
+        if (bad.place) header.index = bad.place->index, header.set = std::int32_t(bad.place->set);
+        return {header, bad.message};
     } catch (const Error& error) {
         const OutcomeKind kind = error.code() == ErrorCode::cancelled ? OutcomeKind::stopped : OutcomeKind::error;
         return {{kind, error.code()}, error.what()};
@@ -81,6 +87,9 @@ void Agreement::together(const std::function<void()>& part) {
     message.resize(first->length);
     comm_.broadcast(std::span(message), rank);
     if (own.failure) std::rethrow_exception(own.failure);
+    if (first->set != no_set) {
+        throw PlacedError(first->code, message, {.index = first->index, .set = unsigned(first->set), .frame = {}});
+    }
     const bool of_many = comm_.size() > 1 && (first->kind == OutcomeKind::error || first->kind == OutcomeKind::foreign);
     throw Error(first->code, of_many ? "rank " + std::to_string(rank) + ": " + message : message);
 }

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ namespace octopair {
 struct BadObject {
     std::uint64_t position;  ///< among the objects of all ranks, the second set after the first
     std::string message;
+    std::optional<ErrorPlace> place = {};  ///< as the message names it; without a frame
 };
 
 /// Forwards a stop request of one rank to all ranks, while the ranks work or wait.
