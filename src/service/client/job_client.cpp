@@ -17,6 +17,7 @@
 #include "service/client/received.hpp"
 #include "service/client/uploader.hpp"
 #include "service/protocol/messages.hpp"
+#include "service/protocol/no_job_error.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/status.hpp"
 
@@ -84,6 +85,17 @@ public:
             const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
             return call(context, *calls_);
         });
+    }
+
+    bool has_job(const std::string& id, const std::stop_token& stop) {
+        v1::JobReport report;
+        try {
+            ask(stop, [&](auto& context, auto& calls) { return calls.Status(&context, name_of(id), &report); });
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::bad_input) return false;
+            throw;
+        }
+        return true;
     }
 
     std::string submit(const detail::Request& request, const JobTerms& terms, const std::stop_token& stop) {
@@ -182,12 +194,18 @@ JobStatus JobClient::cancel(const std::string& id, std::stop_token stop) {
 void JobClient::release(const std::string& id, std::stop_token stop) {
     v1::JobReport report;
     int attempts = 0;
-    state_->ask(stop, [&](auto& context, auto& calls) {
-        const grpc::Status status = calls.Release(&context, state_->name_of(id), &report);
+    try {
+        state_->ask(stop, [&](auto& context, auto& calls) {
+            ++attempts;
+            return calls.Release(&context, state_->name_of(id), &report);
+        });
+    } catch (const service::NoJobError&) {
         // An earlier attempt whose answer was lost may have released the job.
-        const bool again = attempts++ > 0, gone = status.error_message().find("there is no job") != std::string::npos;
-        return again && gone ? grpc::Status::OK : status;
-    });
+        if (attempts == 1) throw;
+    } catch (const Error& error) {
+        // An older server does not say that there is no such job. It refuses a question about the job with this code, too.
+        if (attempts == 1 || error.code() != ErrorCode::bad_input || state_->has_job(id, stop)) throw;
+    }
 }
 
 std::vector<JobStatus> JobClient::list(std::stop_token stop) {

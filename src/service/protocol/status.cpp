@@ -6,6 +6,7 @@
 
 #include "base/error_codes.hpp"
 #include "service/protocol/limit_error.hpp"
+#include "service/protocol/no_job_error.hpp"
 #include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {
@@ -18,6 +19,7 @@ v1::Failure failure_of(const Error& error) {
         failure.set_limit(limit->name());
         failure.set_allowed(limit->allowed());
     }
+    if (dynamic_cast<const NoJobError*>(&error) != nullptr) failure.set_detail(v1::NO_SUCH_JOB);
     if (const auto place = error.place()) {
         failure.mutable_place()->set_index(place->index);
         failure.mutable_place()->set_set(place->set);
@@ -27,6 +29,7 @@ v1::Failure failure_of(const Error& error) {
 
 void throw_failure(const v1::Failure& failure) {
     if (!failure.limit().empty()) throw LimitError(failure.limit(), failure.allowed(), failure.message());
+    if (failure.detail() == v1::NO_SUCH_JOB) throw NoJobError(failure.message());
     const bool known = failure.code() >= 0 && std::size_t(failure.code()) < error_code_table.size();
     const ErrorCode code = known ? ErrorCode(failure.code()) : ErrorCode::engine_failed;
     if (!failure.has_place()) throw Error(code, failure.message());

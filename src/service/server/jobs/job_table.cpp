@@ -3,13 +3,14 @@
 #include <utility>
 
 #include "octopair/error.hpp"
+#include "service/protocol/no_job_error.hpp"
 #include "service/server/jobs/server_job.hpp"
 
 namespace octopair::service {
 
 namespace {
 
-Error no_job(const std::string& id) { return {ErrorCode::bad_input, "there is no job " + id.substr(0, 36)}; }
+NoJobError no_job(const std::string& id) { return NoJobError("there is no job " + id.substr(0, 36)); }
 
 }  // namespace
 
