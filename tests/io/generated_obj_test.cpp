@@ -96,19 +96,31 @@ private:
     }
 
     void write_face() {
-        const auto corners = std::uint32_t(spelling_.one_in(6) ? 1 + spelling_.below(2) : 3 + spelling_.below(4));
-        begin_line(corners == 1 ? "p" : corners == 2 ? "l" : spelling_.one_in(8) ? "fo" : "f");
-        io::PlainMesh& mesh = parts_[current_].mesh;
-        for (std::uint32_t i = 0; i < corners; ++i) {
+        const bool points = spelling_.one_in(12), line = !points && spelling_.one_in(12);
+        const std::size_t corners = points ? 1 + spelling_.below(3)
+                                    : line ? 2 + spelling_.below(3)
+                                           : 3 + spelling_.below(4);
+        begin_line(points ? "p" : line ? "l" : spelling_.one_in(8) ? "fo" : "f");
+        std::vector<std::uint32_t> numbers;
+        for (std::size_t i = 0; i < corners; ++i) {
             const std::size_t vertex = spelling_.below(vertices_.size());
             write_blank();
             text_ += spelling_.one_in(4) ? fmt::format("-{}", vertices_.size() - vertex) : std::to_string(vertex + 1);
             text_ += spelling_.pick({"", "", "/1", "//2", "/1/2", "/-1", "//-1"});
-            mesh.corners.push_back(std::uint32_t(vertex));
+            numbers.push_back(std::uint32_t(vertex));
         }
-        mesh.end_face();
-        if (!material_.empty()) mesh.materials.insert(material_);
+        add_faces(numbers, points ? 1 : line ? 2 : corners);
         end_line(true);
+    }
+
+    /// Adds each `size` successive corners as a face.
+    void add_faces(const std::vector<std::uint32_t>& corners, std::size_t size) {
+        io::PlainMesh& mesh = parts_[current_].mesh;
+        for (std::size_t i = 0; i + size <= corners.size(); ++i) {
+            for (std::size_t k = 0; k < size; ++k) mesh.corners.push_back(corners[i + k]);
+            mesh.end_face();
+        }
+        if (!material_.empty()) mesh.materials.insert(material_);
     }
 
     void write_name(const char* keyword, std::string& name) {

@@ -32,6 +32,17 @@ void append(std::string& bytes, Value value, bool big = false) {
     bytes.append(raw, sizeof(Value));
 }
 
+TEST(PlainMesh, LinesAndPointsOfObjAreNoSurface) {
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    for (const std::string text : {"l 1 2 3 4\n", "p 1 2 3 4\n", "l 1 2 3 1\n", "p 1\np 1 2 3\n"}) {
+        const std::string whole = vertices + text;
+        const std::vector<io::PlainMesh> meshes = io::parse_obj({whole, "a.obj", never});
+        ASSERT_EQ(meshes.size(), 1u) << text;
+        EXPECT_EQ(meshes[0].triangles(), 0u) << text;
+        EXPECT_GT(meshes[0].ends.size(), 1u) << text;
+    }
+}
+
 TEST(PlainMesh, TextIsReadAsFloat64) {
     const io::PlainMesh mesh = off(
         "# made by hand\nOFF\n\n3 1 0 # counts\n.1 +0.2 -1e-30\r\n450000.44 5410000.10 1e36\n1e-400 7. -0 0.5 0.5 0.5\n"

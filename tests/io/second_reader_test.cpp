@@ -101,9 +101,6 @@ std::optional<io::LoadedTriangles> read_or_refuse(const Read& read) {
 const std::map<std::string, std::string> known_differences = {
     {"OBJ/box_UTF16BE.obj", "only Assimp"},
     {"OBJ/number_formats.obj", "only Assimp"},
-    {"OBJ/testline.obj", "12 triangles, not 0"},
-    {"OBJ/testmixed.obj", "36 triangles, not 12"},
-    {"OBJ/testpoints.obj", "12 triangles, not 0"},
     {"OFF/invalid.off", "only Assimp"},
     {"PLY/pond.0.ply", "only Assimp"},
 };

@@ -100,6 +100,10 @@ private:
                 return read_vertex();
             case ObjKeyword::face:
                 return read_face();
+            case ObjKeyword::line:
+                return read_pieces(2);
+            case ObjKeyword::points:
+                return read_pieces(1);
             case ObjKeyword::material:
                 material_ = lines_.rest();
                 material_is_new_ = true;
@@ -143,6 +147,21 @@ private:
         for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word())
             mesh.corners.push_back(corner_of(word));
         mesh.end_face();
+    }
+
+    /// Reads a polyline or points as faces of `corners` corners, so that they are never surface. A single corner is a point, too.
+    void read_pieces(std::size_t corners) {
+        read_face();
+        PlainMesh& mesh = parts_[current_].mesh;
+        const std::size_t begin = mesh.ends.size() < 2 ? 0 : std::size_t(mesh.ends[mesh.ends.size() - 2]);
+        const std::vector<std::uint32_t> all(mesh.corners.begin() + std::ptrdiff_t(begin), mesh.corners.end());
+        if (all.size() <= corners) return;
+        mesh.corners.resize(begin);
+        mesh.ends.pop_back();
+        for (std::size_t i = 0; i + corners <= all.size(); ++i) {
+            for (std::size_t k = 0; k < corners; ++k) mesh.corners.push_back(all[i + k]);
+            mesh.end_face();
+        }
     }
 
     /// Continues the mesh of the current group, or makes it.

@@ -9,7 +9,9 @@ namespace octopair::io {
 /// What a line of an OBJ file is about.
 enum class ObjKeyword : std::uint8_t {
     vertex,
-    face,  ///< also a line or points: faces with fewer than three corners
+    face,
+    line,    ///< a polyline
+    points,  ///< any number of points
     material,
     object,
     group,
