@@ -27,7 +27,7 @@ struct Limits {
     Budget job_slots{"jobs", "job slots", 10, 10};
 };
 
-std::shared_ptr<ServerJob> begin(Limits& limits, Engine& engine, v1::JobSpec spec) {
+std::shared_ptr<ServerJob> begin(Limits& limits, const std::shared_ptr<Engine>& engine, v1::JobSpec spec) {
     check(spec);
     if (object_count(spec) > 500) throw LimitError("objects", 500, "a job of more than 500 objects");
     ServerJob::Parts parts;
@@ -56,7 +56,7 @@ void read_back(const std::shared_ptr<ServerJob>& job) {
     }
 }
 
-void feed(std::string_view input, Engine& engine) {
+void feed(std::string_view input, const std::shared_ptr<Engine>& engine) {
     Limits limits;
     {
         std::shared_ptr<ServerJob> job;
@@ -85,9 +85,9 @@ void feed(std::string_view input, Engine& engine) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    static const auto engine = make_local_engine(1);
+    static const std::shared_ptr<Engine> engine = make_local_engine(1);
     try {
-        feed({reinterpret_cast<const char*>(bytes), size}, *engine);
+        feed({reinterpret_cast<const char*>(bytes), size}, engine);
     } catch (const Error& error) {
         require(error.code() == ErrorCode::bad_input || error.code() == ErrorCode::resource_limit);
         require(std::string_view(error.what()).find('\n') == std::string_view::npos);

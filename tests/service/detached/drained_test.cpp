@@ -45,7 +45,8 @@ class NoRecord final : public service::JobRecord {
 public:
     std::string hash() const override { return "hash"; }
     std::optional<service::Budget::Reservation> ask_memory() override { return service::Budget::Reservation(); }
-    std::unique_ptr<service::UploadedInput> load(Engine& engine, const std::stop_token&) const override {
+    std::unique_ptr<service::UploadedInput> load(const std::shared_ptr<Engine>& engine,
+                                                 const std::stop_token&) const override {
         return std::make_unique<service::UploadedInput>(v1::JobSpec(), engine);
     }
     void end(const v1::JobReport&) override {}
@@ -62,7 +63,7 @@ protected:
         if (detached)
             parts.record = std::make_shared<NoRecord>();
         else
-            parts.input = std::make_unique<service::UploadedInput>(parts.spec, *engine_);
+            parts.input = std::make_unique<service::UploadedInput>(parts.spec, engine_);
         parts.pairs = std::make_shared<service::PairsInMemory>(memory_, 0);
         auto job = std::make_shared<service::ServerJob>(std::move(parts));
         job->queue();
@@ -71,7 +72,7 @@ protected:
     static std::unique_ptr<Engine> make(unsigned width) { return make_local_engine(width); }
 
     service::Budget memory_{"memory_bytes", "bytes of memory", 0};
-    const std::unique_ptr<Engine> engine_ = make_local_engine(1);
+    const std::shared_ptr<Engine> engine_ = make_local_engine(1);
 };
 
 TEST_F(DrainedScheduler, BeginNoDetachedJobs) {
