@@ -11,9 +11,13 @@ OCTOPAIR_TEST_SHARE sets the number of runs in per cent of the usual number, and
 OCTOPAIR_TEST_SEED=N makes only run N, and shows it.
 """
 import argparse
+import base64
 import collections
+import gzip
+import json
 import os
 import random
+import re
 import struct
 import subprocess
 import sys
@@ -25,6 +29,22 @@ USUAL_RUNS = 60
 LONG_AGO = 1_500_000_000  # time of all inputs: before the change by more than any step of a file system's times
 COMMANDS = {"detect": ("--quiet", "--threads", "1"), "view": ("--quiet",)}
 RESULTS = ("page.html",)
+
+
+def without_times(value):
+    """Returns a copy of a JSON value without the times of searches."""
+    if isinstance(value, dict):
+        return {name: without_times(part) for name, part in value.items() if name != "seconds"}
+    return [without_times(part) for part in value] if isinstance(value, list) else value
+
+
+def data_of(page):
+    """Returns the data of an exported page, by their addresses, without times."""
+    data = {}
+    for address, text in re.findall(rb'data-address="([^"]*)">([^<]*)<', page or b""):
+        part = gzip.decompress(base64.b64decode(text))
+        data[address] = json.dumps(without_times(json.loads(part))) if address.endswith(b".json") else part
+    return data
 
 
 class Folder:
@@ -51,7 +71,7 @@ class Folder:
         self.write(form.name, content)
         done = subprocess.run([self.program, *form.arguments, *COMMANDS[form.arguments[0]]], cwd=self.path, capture_output=True, timeout=120,
                               check=False, env={**os.environ, **(environment or {})})
-        results = [self.read(name) for name in RESULTS]
+        results = [None if (page := self.read(name)) is None else data_of(page) for name in RESULTS]
         return done.returncode, done.stdout, done.stderr, results
 
     def read(self, name):
@@ -119,7 +139,7 @@ class Test:
 
     def fail(self, form, change, why):
         self.failures += 1
-        print(f"{' '.join(form.arguments)}: {form.name}: {change}: {why}")
+        print(f"{' '.join(form.arguments)}: {form.name}: {change}: {why[:2000]}")
 
     def verdict(self, form, outcome, content):
         """Returns the kind of an outcome, or nothing if it is wrong."""

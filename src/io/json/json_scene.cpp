@@ -213,6 +213,7 @@ LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop
     const std::filesystem::path directory = std::filesystem::path(path).parent_path();
     LoadedScene meshes;  // what the mesh files say, but for their shapes
     const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), meshes, stop); };
+    if (text.size() == 0) refuse(path, "is empty");  // it was not when its format was decided
     LoadedScene scene = parse_json_scene({text.data(), text.size()}, path, load, stop);
     scene.largest_rounded = meshes.largest_rounded;
     scene.warnings = distinct(std::move(meshes.warnings));
