@@ -65,7 +65,7 @@ struct SceneOptions {
     std::string recording = {};
     /// Called with the number of bytes before memory for pairs is allocated. To refuse the memory, it throws; the call that
     /// needed the memory then throws this exception. Empty: no limit but the machine's memory.
-    /// It must not call the scene: calls that are not const throw Error{usage} there.
+    /// It must not call the scene: octants() and calls that are not const throw Error{usage} there.
     /// Thread safety: called by any thread, one at a time.
     std::function<void(std::uint64_t bytes)> room_for_pairs = {};
     /// Length by which the scene enlarges the boxes that it searches, on each side. While an object stays within its enlarged box, a

@@ -60,7 +60,7 @@ public:
         run(choose, retry, work, Idle{rarely, [] {}});
     }
 
-    /// What a thread in run() does once, when no item has waited for `after`. `task` runs with the queue unlocked.
+    /// What a thread in run() does each time that no item has waited for `after`. `task` runs with the queue unlocked.
     template <typename Task>
     struct Idle {
         std::chrono::nanoseconds after;
@@ -139,7 +139,7 @@ private:
     template <typename Choose, typename Task>
     typename Items::iterator take(std::unique_lock<std::mutex>& lock, const Choose& choose,
                                   std::chrono::nanoseconds retry, const Idle<Task>& idle) {
-        for (bool was_idle = false;;) {
+        for (;;) {
             if (end_ == End::now || (end_ == End::when_empty && waiting_.empty())) return in_work_.end();
             const auto chosen = waiting_.empty() ? waiting_.end() : choose(waiting_);
             if (chosen != waiting_.end()) {
@@ -148,10 +148,7 @@ private:
             }
             if (!waiting_.empty()) {
                 changed_.wait_for(lock, retry);
-            } else if (was_idle) {
-                changed_.wait(lock);
             } else if (changed_.wait_for(lock, idle.after) == std::cv_status::timeout && waiting_.empty()) {
-                was_idle = true;
                 lock.unlock();
                 idle.task();
                 lock.lock();

@@ -1,10 +1,13 @@
 #include "io/formats.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -112,6 +115,19 @@ void refuse_wrapped(const std::string& path, const FileHead& head) {
     if (!wrapping.empty()) refuse(path, wrapping);
 }
 
+/// Refuses text without the mark of its format. Assimp makes objects out of some such texts, or none without an error.
+void refuse_without_mark(const std::string& path, std::string_view ending, const FileHead& head) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 6> marks = {{{".ase", "*3DSMAX_ASCIIEXPORT"},
+                                                                                     {".ask", "*3DSMAX_ASCIIEXPORT"},
+                                                                                     {".dae", "<"},
+                                                                                     {".irr", "<"},
+                                                                                     {".irrmesh", "<"},
+                                                                                     {".x3d", "<"}}};
+    const auto found = std::find_if(marks.begin(), marks.end(), [&](const auto& mark) { return mark.first == ending; });
+    if (found == marks.end() || text_of(head).find(found->second) != std::string::npos) return;
+    refuse(path, fmt::format("has no {} at its beginning, which files of its format ({}) have", found->second, ending));
+}
+
 }  // namespace
 
 KnownFormat known_format(const std::string& path) { return known_by_head(path, head_of(path)); }
@@ -122,6 +138,7 @@ void check_readable(const std::string& path) {
     const KnownFormat known = known_by_head(path, head);
     if (head->size == 0 && known.ending != ".csv") refuse(path, "is empty");
     refuse_wrapped(path, *head);
+    refuse_without_mark(path, known.ending, *head);
     if (known.format == nullptr || known.format->reader != FormatReader::nobody) return;
     if (!known.marked && can_assimp_read(known.ending)) return;
     refuse(path, fmt::format("is {}, which octopair does not read; {}", known.format->name, known.format->remedy));

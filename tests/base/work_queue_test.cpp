@@ -64,7 +64,7 @@ TEST(WorkQueue, AnItemInWorkIsStillAnItemOfTheQueue) {
     EXPECT_TRUE(queue.items().empty());
 }
 
-TEST(WorkQueue, AThreadThatIsIdleRunsItsTaskOnceUntilItHasWorked) {
+TEST(WorkQueue, AThreadThatIsIdleRunsItsTask) {
     WorkQueue<int> queue;
     std::vector<std::string> done;
     queue.add(1);

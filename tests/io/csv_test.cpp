@@ -63,7 +63,8 @@ TEST(Csv, NamesTheLine) {
     EXPECT_EQ(csv_refusal("0;0;0;1;1;1\n"), "f.csv: line 1: 1 fields, not 6 numbers" + hint);
     EXPECT_EQ(csv_refusal("0\t0\t0\t1\t1\t1\n"), "f.csv: line 1: 1 fields, not 6 numbers" + hint);
     EXPECT_EQ(csv_refusal("0,1;0,2;0,3;1,1;1,2;1\n"), "f.csv: line 1: field 2 is not a number: '1;0'" + hint);
-    EXPECT_EQ(csv_refusal("# comment\n0,0,0,1,1,1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
+    EXPECT_EQ(csv_refusal("0 0 0 1 1 1\n"), "f.csv: line 1: 1 fields, not 6 numbers" + hint);
+    EXPECT_EQ(csv_refusal("#comment\n0,0,0,1,1,1\n"), "f.csv: line 1: 1 fields, not 6 numbers");
     EXPECT_EQ(csv_refusal(std::string("0,0,0,1,1,\x01\0x\n", 14)), "f.csv: line 1: field 6 is not a number: '??x'");
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "io/meshes/mesh_reader.hpp"
 #include "io/temporary.hpp"
 
@@ -45,6 +47,16 @@ TEST(DxfContent, InsertsThatAssimpPlacesWronglyAreFound) {
     EXPECT_NE(wrong_in(dxf_with_insert("", one_face + "0\nCIRCLE\n10\n5\n20\n0\n30\n0\n40\n2\n")), "")
         << "Assimp takes the middle of the circle for the base of the block";
     EXPECT_EQ(wrong_in(dxf_with_insert("50\n90\n")).substr(0, 8), "line 57:");
+}
+
+TEST(DxfContent, NumbersAndLineEndsOfAllSpellingsAreUnderstood) {
+    for (const std::string groups : {"50\n+90\n", "70\n+3\n", "41\n1,5\n", "10\n+20.0\n41\n2\n"})
+        EXPECT_NE(wrong_in(dxf_with_insert(groups)), "") << groups;
+    EXPECT_EQ(wrong_in(dxf_with_insert("41\n+1\n50\n+0\n")), "");
+    std::string text = dxf_with_insert("50\n90\n");
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    EXPECT_NE(wrong_in(text), "");
+    EXPECT_EQ(lost_in(dxf_section("ENTITIES", "0\nINSERT\n2\na\n")).size(), 1u) << "a block that is missing";
 }
 
 TEST(DxfContent, WhatIsLostIsCounted) {

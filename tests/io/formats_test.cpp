@@ -217,8 +217,28 @@ TEST_F(Formats, WideTextIsRefusedWhereItsReaderDoesNotKnowIt) {
 #endif
 }
 
+TEST_F(Formats, KeysOfGltfWithinAJsonSceneAreNoMark) {
+    const std::string scene =
+        R"({"shapes": {"accessors": {"type": "sphere", "radius": 1}, "asset": 1}, "objects": []})";
+    EXPECT_EQ(io::marked_format({scene, scene.size()}), "");
+    const std::string gltf = R"({"a\"b": [{"asset": 1}], "asset": {"version": "2.0"}})";
+    EXPECT_EQ(io::marked_format({gltf, gltf.size()}), ".gltf");
+}
+
+#ifdef OCTOPAIR_WITH_MESHES
+TEST_F(Formats, TextWithoutTheMarkOfItsFormatIsRefused) {
+    EXPECT_NE(refusal("a.ase", "hello\nthis is no model\n").find("*3DSMAX_ASCIIEXPORT"), std::string::npos);
+    EXPECT_NE(refusal("a.x3d", "hello world\n").find("has no <"), std::string::npos);
+    const std::string amf =
+        "<?xml version=\"1.0\"?><amf unit=\"millimeter\"><constellation id=\"1\"><instance "
+        "objectid=\"0\"><rz>90</rz></instance></constellation></amf>";
+    EXPECT_NE(refusal("a.amf", amf).find("an instance is rotated (<rz>)"), std::string::npos);
+    EXPECT_NE(refusal("a.ifczip", "PK\x03\x04").find("unpack"), std::string::npos);
+}
+#endif
+
 TEST_F(Formats, SomeFormatsAreWrappedThemselves) {
-    for (const std::string ending : {".3mf", ".zae", ".ifczip", ".pk3"}) {
+    for (const std::string ending : {".3mf", ".zae", ".pk3"}) {
         EXPECT_EQ(io::wrapping_of({"PK\x03\x04", 4}, ending), "") << ending;
         EXPECT_NE(io::wrapping_of({"\x1f\x8b", 2}, ending), "") << ending;
     }

@@ -32,6 +32,31 @@ void append(std::string& bytes, Value value, bool big = false) {
     bytes.append(raw, sizeof(Value));
 }
 
+TEST(PlainMesh, CornersOfObjBeyondAllNumbersAreRefused) {
+    for (const std::string word : {"-9223372036854775808", "-4", "0", "99999999999999999999", "1.0", "1,2"}) {
+        const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + word + "\n";
+        EXPECT_THROW((void)io::parse_obj({text, "a.obj", never}), Error) << word;
+    }
+}
+
+TEST(PlainMesh, ACommentOfObjEndsWithItsLine) {
+    const std::string text = "v 0 0 0 # C:\\a\\\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n 3\n";
+    const std::vector<io::PlainMesh> meshes = io::parse_obj({text, "a.obj", never});
+    ASSERT_EQ(meshes.size(), 1u);
+    EXPECT_EQ(meshes[0].vertices.size(), 3u);
+}
+
+TEST(PlainMesh, SurplusValuesOfPlyAreTold) {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    std::vector<std::string> warnings;
+    const std::string text = head + "0 0 0 7\n1 0 0\n0 1 0\n3 0 1 2\n";
+    EXPECT_EQ(io::parse_ply({text, "a.ply", never, {}, &warnings}).vertices.size(), 3u);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("line 10 has more values"), std::string::npos) << warnings[0];
+}
+
 TEST(PlainMesh, LinesAndPointsOfObjAreNoSurface) {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     for (const std::string text : {"l 1 2 3 4\n", "p 1 2 3 4\n", "l 1 2 3 1\n", "p 1\np 1 2 3\n"}) {
@@ -233,7 +258,8 @@ TEST(PlainMesh, ObjHasObjectsAndGroups) {
     };
     EXPECT_EQ(refused("v 0 0 0\nf 1 2 3\n"), "m.obj: a face has vertex 2, but there are 1");
     EXPECT_EQ(refused("v 0 0 0\nf -2\n"), "m.obj: line 2: a corner of a face is vertex -2, but there are 1 before it");
-    EXPECT_EQ(refused("v 0 0 0\nf 1 0\n"), "m.obj: line 2: a corner of a face is not the number of a vertex");
+    EXPECT_EQ(refused("v 0 0 0\nf 1 0\n"),
+              "m.obj: line 2: a corner of a face is '0', not the number of a vertex; the first vertex is 1");
     EXPECT_EQ(refused("v 0 0\n"), "m.obj: line 1: the line ends where a coordinate should follow");
 }
 

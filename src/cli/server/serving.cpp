@@ -24,13 +24,7 @@
 
 namespace octopair::cli {
 
-namespace {
-
-/// Returns how many jobs may run on threads of gRPC: all but one of these threads, so that one reads what other clients send. gRPC 1.51 has
-/// half as many as cores, at least 2 and at most 16.
 unsigned threads_for_instant_jobs() { return std::clamp(std::thread::hardware_concurrency() / 2, 2U, 16U) - 1; }
-
-}  // namespace
 
 service::ServerOptions server_options_of(const ServeRequest& request) {
     service::ServerOptions options = request.options;

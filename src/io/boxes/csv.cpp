@@ -71,7 +71,9 @@ std::size_t field_length(std::string_view line) {
 
 /// Returns what to do about a line with other separators than commas; empty for other lines.
 std::string_view separator_hint(std::string_view line) {
-    if (line.find_first_of(";\t") == std::string_view::npos) return "";
+    const std::string_view text = trimmed(line);
+    const bool has_commas = text.find(',') != std::string_view::npos;
+    if (text.find_first_of(has_commas ? ";\t" : "; \t") == std::string_view::npos) return "";
     return "; separate the numbers with commas, and write them with a point";
 }
 

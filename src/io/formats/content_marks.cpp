@@ -118,11 +118,18 @@ std::uint32_t number_at(std::string_view bytes, std::size_t offset) {
     return number;
 }
 
-/// Returns whether a text has a key of a JSON object, such as "asset".
+/// Returns whether the outer object of a JSON text has a key, such as "asset". The text may be cut.
 bool has_key(std::string_view text, std::string_view key) {
-    const std::string quoted = fmt::format("\"{}\"", key);
-    for (std::size_t at = text.find(quoted); at != std::string_view::npos; at = text.find(quoted, at + 1)) {
-        if (skip_white(text.substr(at + quoted.size())).starts_with(':')) return true;
+    int depth = 0;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        if (text[at] == '{' || text[at] == '[') ++depth;
+        if (text[at] == '}' || text[at] == ']') --depth;
+        if (text[at] != '"') continue;
+        const std::size_t begin = at + 1;
+        for (++at; at < text.size() && text[at] != '"'; ++at) at += text[at] == '\\' ? 1 : 0;
+        const std::string_view name = text.substr(std::min(begin, text.size()), at - begin);
+        if (depth == 1 && name == key && skip_white(text.substr(std::min(at + 1, text.size()))).starts_with(':'))
+            return true;
     }
     return false;
 }
@@ -244,7 +251,7 @@ std::string_view text_format(const FileHead& head) {
 
 /// Returns whether files with this ending may be packed in this way.
 bool is_legal_packing(const Packing& packing, std::string_view ending) {
-    constexpr std::array zipped = {".3mf"sv, ".zae"sv, ".ifczip"sv, ".pk3"sv};
+    constexpr std::array zipped = {".3mf"sv, ".zae"sv, ".pk3"sv};
     if (packing.bytes.starts_with("PK")) return std::find(zipped.begin(), zipped.end(), ending) != zipped.end();
     return ending == ".blend" && (packing.bytes[0] == '\x1f' || packing.bytes[0] == '\x28');
 }

@@ -7,24 +7,22 @@ namespace octopair::io {
 
 namespace {
 
-using enum AxisChange;
-
 constexpr FileFormat own(std::string_view name, std::string_view endings) {
-    return {name, endings, FormatReader::octopair, none, {}};
+    return {name, endings, FormatReader::octopair, AxisChange::none, {}};
 }
 
-constexpr FileFormat imported(std::string_view name, std::string_view endings, AxisChange axes = none) {
+constexpr FileFormat imported(std::string_view name, std::string_view endings, AxisChange axes = AxisChange::none) {
     return {name, endings, FormatReader::assimp, axes, {}};
 }
 
 constexpr FileFormat refused(std::string_view name, std::string_view endings, std::string_view remedy) {
-    return {name, endings, FormatReader::nobody, none, remedy};
+    return {name, endings, FormatReader::nobody, AxisChange::none, remedy};
 }
 
 constexpr std::string_view from_cad = "export it as glTF, OBJ or STL from a CAD program, for example FreeCAD",
                            from_its_program = "export it as glTF, OBJ or STL from the program that wrote it",
                            from_scene = "convert it to glTF, for example with Blender",
-                           points = "octopair needs surfaces or boxes; save boxes or spheres as .npy or .csv",
+                           from_points = "octopair needs surfaces or boxes; save boxes or spheres as .npy or .csv",
                            no_model = "give octopair a model, or boxes as .npy or .csv";
 
 // The axis changes are those of Assimp 5.2. tests/io/assimp_axes_test.cpp has a block in these formats.
@@ -38,42 +36,42 @@ constexpr auto formats = std::to_array<FileFormat>({
     own("OFF", ".off"),
     own("glTF", ".gltf"),
     own("binary glTF", ".glb"),
-    {"IFC", ".ifc .ifczip", FormatReader::checked_assimp, turned, {}},
+    {"IFC", ".ifc .ifczip", FormatReader::checked_assimp, AxisChange::turned, {}},
     imported("3D GameStudio terrain", ".hmp"),
-    imported("3DS", ".3ds .prj", turned),
+    imported("3DS", ".3ds .prj", AxisChange::turned),
     imported("3MF", ".3mf"),
     imported("AC3D", ".ac .ac3d .acc"),
     imported("AMF", ".amf"),
-    imported("ASE", ".ase .ask", turned),
+    imported("ASE", ".ase .ask", AxisChange::turned),
     imported("Assimp binary", ".assbin"),
     imported("Blender", ".blend"),
-    imported("Blitz3D", ".b3d", mirrored),
+    imported("Blitz3D", ".b3d", AxisChange::mirrored),
     imported("BSP", ".bsp .pk3"),
     imported("BVH", ".bvh"),
     imported("COLLADA", ".dae .zae"),
     imported("CharacterStudio motion", ".csm"),
-    imported("DXF", ".dxf", turned),
-    imported("DirectX", ".x", mirrored),
+    imported("DXF", ".dxf", AxisChange::turned),
+    imported("DirectX", ".x", AxisChange::mirrored),
     imported("FBX", ".fbx"),
-    imported("IQM", ".iqm", turned),
+    imported("IQM", ".iqm", AxisChange::turned),
     imported("Irrlicht", ".irr .irrmesh"),
-    imported("LightWave", ".lwo .lxo", mirrored),
-    imported("LightWave scene", ".lws .mot", mirrored),
-    imported("MD2", ".md2", turned),
-    imported("MD3", ".md3", turned),
-    imported("MD5", ".md5mesh .md5anim .md5camera", turned),
-    imported("MDC", ".mdc", turned),
-    imported("MDL", ".mdl", turned),
+    imported("LightWave", ".lwo .lxo", AxisChange::mirrored),
+    imported("LightWave scene", ".lws .mot", AxisChange::mirrored),
+    imported("MD2", ".md2", AxisChange::turned),
+    imported("MD3", ".md3", AxisChange::turned),
+    imported("MD5", ".md5mesh .md5anim .md5camera", AxisChange::turned),
+    imported("MDC", ".mdc", AxisChange::turned),
+    imported("MDL", ".mdl", AxisChange::turned),
     imported("MilkShape", ".ms3d"),
     imported("NFF", ".nff .enff"),
     imported("Nendo", ".ndo"),
     imported("Ogre", ".mesh .mesh.xml"),
     imported("OpenGEX", ".ogex"),
-    imported("PMX", ".pmx", mirrored),
+    imported("PMX", ".pmx", AxisChange::mirrored),
     imported("Quick3D", ".q3o .q3s"),
     imported("Silo", ".sib"),
     imported("Terragen", ".ter"),
-    imported("Unreal", ".3d .uc", mirrored),
+    imported("Unreal", ".3d .uc", AxisChange::mirrored),
     imported("Valve SMD", ".smd .vta"),
     imported("X3D", ".x3d .x3db"),
     imported("XGL", ".xgl .zgl"),
@@ -86,19 +84,19 @@ constexpr auto formats = std::to_array<FileFormat>({
     refused("CATIA", ".catpart .catproduct", from_its_program),
     refused("Cinema 4D", ".c4d", from_its_program),
     refused("DWG", ".dwg", from_its_program),
-    refused("E57", ".e57", points),
+    refused("E57", ".e57", from_points),
     refused("FreeCAD", ".fcstd", from_its_program),
     refused("ifcXML", ".ifcxml", "export it as IFC2x3 in STEP form (.ifc), or as glTF or OBJ"),
     refused("IGES", ".igs .iges", from_cad),
     refused("Inventor", ".ipt .iam", from_its_program),
     refused("JPEG", ".jpg .jpeg", no_model),
     refused("JT", ".jt", from_cad),
-    refused("LAS", ".las .laz", points),
+    refused("LAS", ".las .laz", from_points),
     refused("Maya", ".ma .mb", from_its_program),
     refused("Microsoft compound document", "", from_its_program),
     refused("NPZ", ".npz", "save its array as .npy with numpy.save"),
     refused("Navisworks", ".nwd .nwc .nwf", from_its_program),
-    refused("PCD", ".pcd", points),
+    refused("PCD", ".pcd", from_points),
     refused("PDF", ".pdf", no_model),
     refused("PNG", ".png", no_model),
     refused("Parasolid", ".x_t .x_b .xmt_txt", from_cad),

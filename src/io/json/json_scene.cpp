@@ -28,7 +28,7 @@ namespace {
 using nlohmann::json;
 
 /// Returns the pose with the position and the rotation of the two keys. Both keys are optional.
-Pose pose_of(const JsonFields& fields, std::string_view place_key, std::string_view turn_key) {
+Pose read_pose(const JsonFields& fields, std::string_view place_key, std::string_view turn_key) {
     const Point3d place = fields.find(place_key) != nullptr ? fields.point(place_key) : Point3d{0, 0, 0};
     const json* value = fields.find(turn_key);
     if (value == nullptr) return make_pose(place);
@@ -92,7 +92,7 @@ private:
         fields.allow({"name", "shape", "position", "rotation", "end_position", "end_rotation", "group", "mask",
                       "padding", "parent"});
         loaded_.geometry.push_back(shape_number(fields));
-        loaded_.poses.push_back(pose_of(fields, "position", "rotation"));
+        loaded_.poses.push_back(read_pose(fields, "position", "rotation"));
         add_parent(fields);
         add_end(fields, number);
         if (fields.find("padding") != nullptr) set(loaded_.padding, number, fields.at_least_zero("padding"), 0.0);
@@ -141,7 +141,7 @@ private:
         if (loaded_.end_poses.empty()) loaded_.end_poses.assign(loaded_.poses.begin(), loaded_.poses.end() - 1);
         loaded_.end_poses.resize(number);
         loaded_.end_poses.push_back(
-            pose_of(fields, moves ? "end_position" : "position", turns ? "end_rotation" : "rotation"));
+            read_pose(fields, moves ? "end_position" : "position", turns ? "end_rotation" : "rotation"));
     }
 
     template <typename T>

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -26,17 +27,24 @@ struct Group {
     std::string_view value;
     std::size_t line = 0;  // of the code
 
+    /// Returns the value as a number; nan if it is none.
     double number() const {
+        const std::string_view text = unsigned_text();
         double number = 0;
-        std::from_chars(value.data(), value.data() + value.size(), number);
-        return number;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        const bool is_number = error == std::errc() && end == text.data() + text.size();
+        return is_number ? number : std::numeric_limits<double>::quiet_NaN();
     }
     /// Returns the whole number at the beginning of the value; 0 if there is none.
     int whole() const {
+        const std::string_view text = unsigned_text();
         int number = 0;
-        std::from_chars(value.data(), value.data() + value.size(), number);
+        std::from_chars(text.data(), text.data() + text.size(), number);
         return number;
     }
+
+private:
+    std::string_view unsigned_text() const { return value.starts_with('+') ? value.substr(1) : value; }
 };
 
 class GroupReader {
@@ -57,9 +65,10 @@ public:
 private:
     std::optional<std::string_view> take_line() {
         if (rest_.empty()) return std::nullopt;
-        const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+        const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
         const std::string_view line = trimmed_line(rest_.substr(0, end));
-        rest_.remove_prefix(std::min(end + 1, rest_.size()));
+        const std::size_t mark = rest_.substr(end).starts_with("\r\n") ? 2 : 1;
+        rest_.remove_prefix(std::min(end + mark, rest_.size()));
         ++line_;
         return line;
     }
@@ -177,7 +186,7 @@ private:
         set_point(insert.extrusion, 210, group);
         if (group.code >= 41 && group.code <= 43) insert.scale[std::size_t(group.code - 41)] = group.number();
         if (group.code == 50) insert.angle = group.number();
-        if (group.code == 70 || group.code == 71) insert.copies *= std::max(1.0, group.number());
+        if (group.code == 70 || group.code == 71) insert.copies *= group.number() < 1 ? 1 : group.number();
     }
 
     void check_polyline(const Group& group) {
@@ -190,7 +199,10 @@ private:
     void judge(const Insert& insert) {
         const auto found = std::find_if(blocks_.begin(), blocks_.end(),
                                         [&](const Block& block) { return block.name == insert.block; });
-        if (found == blocks_.end()) return;
+        if (found == blocks_.end()) {
+            ++lost_[fmt::format("inserts of block '{}', which Assimp does not find", insert.block)];
+            return;
+        }
         if (found->left_out > 0) lost_[fmt::format("entities of block '{}'", found->name)] = found->left_out;
         if (!found->surfaces) return;
         if (found->name_for_assimp != found->name) {
@@ -210,7 +222,7 @@ private:
             const double scale = insert.scale[axis];
             const double error =
                 (scale - 1) * insert.position[axis] + scale * block.base[axis] - block.base_for_assimp[axis];
-            if (error != 0) return false;
+            if (!(error == 0)) return false;  // nan: a number of it is not understood
         }
         return true;
     }

@@ -69,6 +69,22 @@ std::vector<std::string> check_dxf(const std::string& path, const KnownFormat& k
                        faults.wrong));
 }
 
+/// Throws: Error{bad_input} for an AMF file with a rotated instance: Assimp takes the angle for a translation.
+void check_amf(const std::string& path, const KnownFormat& known) {
+    if (known.ending != ".amf") return;
+    const Buffer<char> bytes = read_bytes(InputFile(path));
+    const std::string_view text(bytes.data(), bytes.size());
+    for (const std::string_view tag : {"<rx>", "<ry>", "<rz>"}) {
+        for (std::size_t at = text.find(tag); at != std::string_view::npos; at = text.find(tag, at + 1)) {
+            const std::string_view angle = text.substr(at + tag.size(), text.find('<', at + 1) - at - tag.size());
+            if (angle.find_first_of("123456789") == std::string_view::npos) continue;
+            refuse(path,
+                   fmt::format("an instance is rotated ({}), which Assimp reads wrongly; export it as STL, OBJ or 3MF",
+                               tag));
+        }
+    }
+}
+
 /// Returns what to do about a file that Assimp refuses, as far as its content shows.
 std::string remedy_for(const InputFile& file) {
     std::string begin(std::size_t(std::min<std::uint64_t>(file.size(), 4)), '\0');
@@ -137,6 +153,7 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
 }
 
 const aiScene& MeshFile::import(const std::string& path) {
+    check_amf(path, known_);
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
     // Assimp chooses its reader by the ending. A file with another ending, or none, is read from memory, with the right one.
     const aiScene* scene = known_.by_content ? import_bytes(read_bytes(readable)) : importer_.ReadFile(path, 0u);

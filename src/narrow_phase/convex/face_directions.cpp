@@ -87,7 +87,7 @@ private:
 };
 
 /// Returns the part of `direction` that is perpendicular to `edge`. The second step removes the rounding of the first one.
-Point3d across(const Point3d& edge, Point3d direction) {
+Point3d turned_across(const Point3d& edge, Point3d direction) {
     for (int step = 0; step < 2; ++step) {
         direction = minus(direction, times(edge, dot(direction, edge) / dot(edge, edge)));
     }
@@ -108,7 +108,7 @@ void propose_face_directions(const LocalConvexPair& pair, double enough, LeastOv
             if (is_enough(one->normals[i])) return;
         }
         for (std::size_t i = 0; i < one->edge_count; ++i) {
-            if (is_enough(across(one->edges[i], direction))) return;
+            if (is_enough(turned_across(one->edges[i], direction))) return;
         }
     }
     for (std::size_t i = 0; i < a.edge_count; ++i) {

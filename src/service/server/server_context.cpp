@@ -62,7 +62,8 @@ ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog:
                                                                                   given.limits.state_bytes_per_client)},
                       log)),
       attached("", "", 0),
-      scheduler({given.engine, given.small_engine ? given.small_engine : given.engine, given.renewable_engines,
+      scheduler({given.engine, given.small_engine ? given.small_engine : given.engine, tells_clients_apart(given),
+                 given.renewable_engines,
                  [this] {
                      array_pool.clear();
                      give_back_free_memory();

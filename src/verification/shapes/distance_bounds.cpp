@@ -167,6 +167,7 @@ std::vector<Face> polytope_around(const ConvexBody& first, const ConvexBody& sec
         return first.support(direction) - second.support(-direction);
     };
     std::vector<Vector> p;
+    p.reserve(simplex.size());
     for (const Difference& corner : simplex) p.push_back(corner.point());
     if (p.size() == 4)
         return faces_of({{p[0], p[1], p[2]}, {p[0], p[2], p[3]}, {p[0], p[3], p[1]}, {p[1], p[3], p[2]}});

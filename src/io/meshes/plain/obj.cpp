@@ -75,7 +75,7 @@ public:
         while (lines_.next()) {
             is_empty = false;
             if (lines_.begins_with('#')) continue;
-            lines_.join_continued('\\');
+            if (!lines_.contains('#')) lines_.join_continued('\\');  // a comment ends with its line
             read_line();
         }
         if (is_empty) refuse(file_.path, "is empty");
@@ -181,9 +181,12 @@ private:
         std::int64_t number = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
         const bool whole = error == std::errc() && (end == word.data() + word.size() || *end == '/');
-        if (!whole || number == 0) lines_.refuse_line("a corner of a face is not the number of a vertex");
+        if (!whole || number == 0) {
+            lines_.refuse_line(fmt::format(
+                "a corner of a face is '{}', not the number of a vertex; the first vertex is 1", shown(word)));
+        }
         const auto count = std::int64_t(vertices_.size());
-        if (number > 0xFFFFFFFF || -number > count) {
+        if (number > 0xFFFFFFFF || number < -count) {
             lines_.refuse_line(
                 fmt::format("a corner of a face is vertex {}, but there are {} before it", number, count));
         }

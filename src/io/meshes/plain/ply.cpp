@@ -23,7 +23,13 @@ public:
     explicit TextValues(TextLines& lines) : lines_(lines) {}
     void begin_element() { lines_.need("an element"); }
     bool more() { return !lines_.rest().empty(); }
+    void end_element() {
+        if (surplus_ == 0 && more()) surplus_ = lines_.line_number();
+    }
     void end(const FileContent& file) {
+        if (surplus_ > 0)
+            file.warn(fmt::format("line {} has more values than its element has properties; the rest of it is not read",
+                                  surplus_));
         if (lines_.next())
             file.warn(fmt::format("from line {} on it is not read, because its header says that it ends before",
                                   lines_.line_number()));
@@ -39,6 +45,7 @@ public:
 
 private:
     TextLines& lines_;
+    std::uint64_t surplus_ = 0;  // first line that is not read whole; 0: none
 };
 
 /// Reads the values of a binary file.
@@ -50,6 +57,7 @@ public:
         if (++elements_ % 4096 == 0) file_.checkpoint(at_);
     }
     static bool more() { return true; }
+    static void end_element() {}
     void end(const FileContent& file) const {
         const std::string_view left = file.bytes.substr(at_);
         if (left.find_first_not_of("\r\n") == std::string_view::npos) return;
@@ -175,6 +183,7 @@ private:
                 }
             }
         }
+        values_.end_element();
         return element.properties.size();
     }
 

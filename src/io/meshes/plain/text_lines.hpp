@@ -40,6 +40,7 @@ public:
     std::string_view peek();
     /// Skips so many characters of the next word. Requires: the word is as long.
     void skip(std::size_t characters);
+    bool contains(char c) const { return line_.find(c) != std::string_view::npos; }
     /// Returns the rest of the line, without white space around it.
     std::string_view rest();
     /// Removes the rest of the line from `comment` on.

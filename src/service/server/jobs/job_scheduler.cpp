@@ -28,7 +28,10 @@ double work_of(const ServerJob& job) { return double(std::max<std::uint64_t>(obj
 }  // namespace
 
 JobScheduler::JobScheduler(const Makers& makers, const Widths& widths)
-    : renewable_(makers.renewable), on_idle_(makers.on_idle), instant_(widths.instant) {
+    : tells_clients_apart_(makers.tells_clients_apart),
+      renewable_(makers.renewable),
+      on_idle_(makers.on_idle),
+      instant_(widths.instant) {
     for (Instant& instant : instant_) instant.engine = std::make_unique<KeptEngine>(makers.small, 1);
     try {
         start(large_, makers.large, widths.large);
@@ -69,10 +72,11 @@ void JobScheduler::run_next(Lane& lane, KeptEngine& engine, const std::shared_pt
         lane.order.add(job->owner(), std::max(0.0, took.count() * objects_per_second - work_of(*job)));
         if (--lane.running[job->owner()] == 0) lane.running.erase(job->owner());
     }
+    ++ended_;
     if (again) lane.queue.add(job);
 }
 
-/// Gives back memory, because the thread of `engine` had nothing to do for a while.
+/// Gives back memory, because the thread of `engine` had nothing to do for a while. An engine that an upload uses is made anew later.
 void JobScheduler::renew_idle(Lane& lane, KeptEngine& engine) {
     const bool is_large = &lane == &large_;
     try {
@@ -82,7 +86,8 @@ void JobScheduler::renew_idle(Lane& lane, KeptEngine& engine) {
         }
     } catch (const std::exception&) {  // no memory or no thread for a new engine: the old one stays
     }
-    if (is_large && on_idle_) on_idle_();
+    const std::uint64_t ended = ended_;
+    if (is_large && on_idle_ && std::exchange(cleaned_after_, ended) != ended) on_idle_();
 }
 
 /// Returns the job whose turn it is among those that can run, or jobs.end(). Candidates are the first attached and the first detached
@@ -93,7 +98,7 @@ JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs
         Queue::Items::iterator job;
     };
     const std::lock_guard lock(lane.mutex);
-    const unsigned most = std::max(1u, lane.engines - 1);
+    const unsigned most = tells_clients_apart_ ? std::max(1u, lane.engines - 1) : lane.engines;
     std::vector<Candidate> candidates;
     std::set<std::pair<std::string_view, bool>> seen;
     for (auto job = jobs.begin(); job != jobs.end(); ++job) {
@@ -126,6 +131,7 @@ bool JobScheduler::run_at_once(ServerJob& job) {
         const std::unique_lock lock(instant.mutex, std::try_to_lock);
         if (!lock.owns_lock()) continue;
         (void)job.run(instant.engine->use());
+        ++ended_;
         return true;
     }
     return false;

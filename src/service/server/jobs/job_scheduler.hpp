@@ -5,7 +5,8 @@
 //   jobs share one engine with all threads.
 //   In each of the two queues, clients take turns (fair_order.hpp). The jobs of one client run in the order in which they were added. A
 //   detached job that waits for memory lets attached jobs pass, but no detached one whose turn is later.
-//   If there are several engines of small jobs, one client has at most all but one: few objects can have so many pairs that a job takes long.
+//   If there are several engines of small jobs, one client has at most all but one, where clients are told apart: few objects can have so
+//   many pairs that a job takes long.
 //   An engine that was idle for `idle_before_renewal` is made anew, if renewable: it keeps the memory of its largest job otherwise.
 //   An attached job of at most `max_instant_objects` objects runs on the calling thread if an instant engine is free.
 //   Waking a thread would take as long as the job.
@@ -47,8 +48,9 @@ public:
     };
     struct Makers {
         const EngineMaker &large, &small;  ///< make the engine for large jobs, and those for small and instant ones
+        bool tells_clients_apart = false;  ///< one client may not have all engines of small jobs
         bool renewable = false;            ///< making an engine is cheap: it starts no processes and talks to no ranks
-        /// Called when no large job has waited for `idle_before_renewal`, on the thread of large jobs. May be empty.
+        /// Called when no large job has waited for `idle_before_renewal` and some job has ended, on the thread of large jobs. May be empty.
         std::function<void()> on_idle = {};
     };
     JobScheduler(const Makers& makers, const Widths& widths);
@@ -93,10 +95,12 @@ private:
     void renew_idle(Lane& lane, KeptEngine& engine);
     Queue::Items::iterator next_ready(Queue::Items& jobs, Lane& lane) const;
 
-    const bool renewable_;
+    const bool tells_clients_apart_, renewable_;
     const std::function<void()> on_idle_;
     Lane small_, large_;
     std::atomic<bool> holds_detached_ = false;
+    std::atomic<std::uint64_t> ended_ = 0;  // number of jobs that have run
+    std::uint64_t cleaned_after_ = 0;       // value of ended_ at the last on_idle_(); used by the thread of large jobs
     std::vector<std::unique_ptr<KeptEngine>> engines_;  // the one for large jobs first
     std::vector<Instant> instant_;
     std::vector<std::jthread> threads_;

@@ -20,16 +20,18 @@ public:
     /// Returns the engine. It is in use while a copy of the pointer exists.
     std::shared_ptr<Engine> use() {
         const std::lock_guard lock(mutex_);
+        was_used_ = true;
         return engine_;
     }
 
-    /// Makes the engine anew if it is not in use. Throws: what the maker throws; the engine stays then.
+    /// Makes the engine anew if it was used, and is not in use now. Throws: what the maker throws; the engine stays then.
     void renew() {
         std::shared_ptr<Engine> old;  // destroyed after the lock is released
         const std::lock_guard lock(mutex_);
-        if (engine_.use_count() > 1) return;
+        if (!was_used_ || engine_.use_count() > 1) return;
         old = maker_(width_);
         old.swap(engine_);
+        was_used_ = false;
     }
 
 private:
@@ -37,6 +39,7 @@ private:
     const unsigned width_;
     std::mutex mutex_;
     std::shared_ptr<Engine> engine_;
+    bool was_used_ = false;  // since it was made
 };
 
 }  // namespace octopair::service
