@@ -28,7 +28,7 @@ bool may_be_gltf_for_assimp(const std::string& path);
 /// Throws: Error{bad_input} that names the object in the file; Error{io_failed, resource_limit, cancelled}.
 std::optional<LoadedScene> read_gltf_scene(const std::string& path, const SceneContent& content,
                                            const std::stop_token& stop);
-/// The same with the content of a file.
+/// Like read_gltf_scene(), with the content of the file.
 std::optional<LoadedScene> parse_gltf_scene(const std::string& path, Buffer<std::byte> bytes,
                                             const SceneContent& content, const std::stop_token& stop);
 

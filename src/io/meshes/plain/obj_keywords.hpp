@@ -6,7 +6,7 @@
 
 namespace octopair::io {
 
-/// What a line of an OBJ file is about.
+/// Meaning of a line of an OBJ file.
 enum class ObjKeyword : std::uint8_t {
     vertex,
     face,
