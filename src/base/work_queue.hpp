@@ -60,7 +60,7 @@ public:
         run(choose, retry, work, Idle{rarely, [] {}});
     }
 
-    /// What a thread in run() does each time that no item has waited for `after`. `task` runs with the queue unlocked.
+    /// A thread in run() calls `task` each time that no item has waited for `after`. `task` runs with the queue unlocked.
     template <typename Task>
     struct Idle {
         std::chrono::nanoseconds after;

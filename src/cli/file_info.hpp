@@ -1,4 +1,4 @@
-// What octopair reads from a file, as lines for people.
+// Describes what octopair reads from a file, as lines of text.
 #pragma once
 
 #include <stop_token>

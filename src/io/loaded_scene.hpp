@@ -32,7 +32,7 @@ struct LoadedScene {
     std::vector<std::string> names;  ///< empty, or one name per object; an object without a name has an empty one
     ObjectDetails details;           ///< empty, or a row per object
     SceneSpace space;                ///< axes and unit of the coordinates
-    /// What a user should know about the files, for example that something was not read. Each is one line "FILE: ...".
+    /// Warnings of the readers, for example that a part of a file was not read. Each is one line "FILE: ...".
     std::vector<std::string> warnings;
     std::vector<std::string> not_read;   ///< what readers left out, for example "IFCSPACE (3)"; for `octopair info`
     std::optional<LoadedShapes> shapes;  ///< set if SceneContent::shapes is set and the file has shapes

@@ -17,7 +17,7 @@ enum class FormatReader : std::uint8_t {
     nobody,          ///< files are refused; FileFormat::remedy says what to do
 };
 
-/// What Assimp does to the coordinates of a file. octopair undoes it, without rounding.
+/// Change that Assimp makes to the coordinates of a file. octopair reverts it without rounding.
 enum class AxisChange : std::uint8_t {
     none,
     turned,    ///< (x, y, z) becomes (x, z, -y), in the transform of the root

@@ -24,7 +24,7 @@ struct Stretch {
     std::uint32_t from, reach;
 };
 
-/// What is known of a bundle on the line.
+/// State of a bundle of edges on the sweep line.
 struct Active {
     std::uint32_t bundle;
     int weight;
