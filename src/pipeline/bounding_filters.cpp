@@ -16,6 +16,7 @@
 #include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
+#include "pipeline/second_set.hpp"
 
 namespace octopair {
 namespace {
@@ -164,7 +165,7 @@ public:
     BoundingFilter(Hull hull, const ShapedObjects& first, const ShapedObjects& second, double margin)
         : hull_(hull), first_(first), second_(second), margin_(margin) {
         check(first_);
-        check(second_);
+        in_second_set([this] { check(second_); });
         if (!(margin >= 0) || !std::isfinite(margin)) {
             throw Error(ErrorCode::bad_input, "the margin is not finite, or below 0");
         }

@@ -15,6 +15,7 @@
 #include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
+#include "pipeline/second_set.hpp"
 
 namespace octopair {
 
@@ -28,7 +29,7 @@ public:
           second_(second ? *second : first),
           moving_(!first_.end_poses.empty() || !second_.end_poses.empty()) {
         check(first_);
-        check(second_);
+        in_second_set([this] { check(second_); });
         first_open_ = open_geometries(first_);
         second_open_ = open_geometries(second_);
     }

@@ -20,6 +20,7 @@
 #include "octopair/filters.hpp"
 #include "parallel/team.hpp"
 #include "pipeline/per_object.hpp"
+#include "pipeline/second_set.hpp"
 
 namespace octopair {
 
@@ -186,7 +187,7 @@ std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const Tri
                                              const TriangleSet* second) {
     const FloatingPointScope scope;
     check(first, options.threads);
-    if (second != nullptr) check(*second, options.threads);
+    if (second != nullptr) in_second_set([&] { check(*second, options.threads); });
     if (!(options.margin >= 0 && options.margin <= std::numeric_limits<double>::max())) {
         throw Error(ErrorCode::bad_input, "the margin must be finite and not below 0");
     }

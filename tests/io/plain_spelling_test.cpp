@@ -15,7 +15,7 @@
 namespace octopair::test {
 namespace {
 
-/// What a reader makes of a text.
+/// Result of a reader for a text.
 struct ReadMeshes {
     std::vector<io::PlainMesh> meshes;
     std::vector<std::string> warnings;

@@ -11,12 +11,32 @@
 #include "octopair/error.hpp"
 #include "pipeline/exact_scene.hpp"
 #include "samples/random.hpp"
+#include "support/error_place.hpp"
 
 namespace octopair::test {
 namespace {
 
 using samples::random_pose;
 using samples::RandomStream;
+
+TEST(ExactFilters, PlaceErrorsInTheirSet) {
+    Scene right, wrong;
+    for (Scene* const scene : {&right, &wrong}) {
+        scene->add(shape::Sphere{1});
+        scene->add(shape::Sphere{1});
+    }
+    wrong.poses[1].rows[0][3] = std::numeric_limits<double>::quiet_NaN();
+    const ShapedObjects good = right.objects(), bad = wrong.objects();
+    const auto expect = [&](const auto& make) {
+        expect_place([&] { (void)make(bad, nullptr); }, 1, 0);
+        expect_place([&] { (void)make(bad, &good); }, 1, 0);
+        expect_place([&] { (void)make(good, &bad); }, 1, 1);
+    };
+    expect([](const ShapedObjects& a, const ShapedObjects* b) { return make_exact_object_filter(a, {}, b); });
+    expect([](const ShapedObjects& a, const ShapedObjects* b) { return make_exact_feature_filter(a, {}, b); });
+    expect([](const ShapedObjects& a, const ShapedObjects* b) { return make_sphere_filter(a, 0, b); });
+    expect([](const ShapedObjects& a, const ShapedObjects* b) { return make_oriented_box_filter(a, 0, b); });
+}
 
 std::vector<Pair> pairs_of(const std::vector<Collision>& collisions) {
     std::vector<Pair> pairs;

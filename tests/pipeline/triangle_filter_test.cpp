@@ -15,6 +15,7 @@
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"
 #include "support/compare.hpp"
+#include "support/error_place.hpp"
 
 namespace octopair::test {
 namespace {
@@ -216,6 +217,11 @@ TEST(TriangleFilter, NamesWhatIsWrong) {
             EXPECT_EQ(message_of([&] { make_triangle_filter({some}); }), message);
         }
     }
+    auto second = triangles;
+    second[1][0][0] = std::nan("");
+    const TriangleSet wrong_second{second};
+    expect_place([&] { (void)make_triangle_filter({second}); }, 1, 0);
+    expect_place([&] { (void)make_triangle_filter({triangles}, {}, &wrong_second); }, 1, 1);
     triangles[2][1][0] = std::nan("");
     EXPECT_EQ(message_of([&] { boxes_of(triangles); }), "triangle 2 has a corner that is not finite");
     EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}); }), "triangle 2 has a corner that is not finite");

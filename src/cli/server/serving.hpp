@@ -16,11 +16,11 @@
 
 namespace octopair::cli {
 
-/// Returns the options of the server, with the engine of the request. With --engine mpi, the caller must replace the engine.
 /// Returns how many jobs may run on threads of gRPC: all but one of these threads, so that one reads what other clients send. gRPC 1.51 has
 /// half as many as cores, at least 2 and at most 16.
 unsigned threads_for_instant_jobs();
 
+/// Returns the options of the server, with the engine of the request. With --engine mpi, the caller must replace the engine.
 service::ServerOptions server_options_of(const ServeRequest& request);
 
 std::shared_ptr<spdlog::logger> make_log(const ServeRequest& request);

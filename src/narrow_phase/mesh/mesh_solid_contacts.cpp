@@ -53,14 +53,15 @@ double deepest_in_mesh(const PosedMesh& mesh, double radius, const std::vector<P
     return deepest;
 }
 
-/// Returns the contact points of some of the `count` triangles that meet the solid, at a fixed stride.
-std::vector<Point3d> some_contact_points(const PosedMesh& mesh, const BoxedSolid& solid, std::size_t count) {
+/// Returns the contact points of some of the `count` triangles that meet the solid, at a fixed stride. Ends early after a stop request.
+std::vector<Point3d> some_contact_points(const PosedMesh& mesh, const BoxedSolid& solid, std::size_t count,
+                                         const std::stop_token& stop) {
     std::vector<Point3d> points;
     const std::size_t step = count / most_samples + 1;
     std::size_t i = 0;
     visit_meeting_triangles(mesh, solid, [&](std::uint32_t, const Triangle3d& triangle) {
         if (i++ % step == 0) points.push_back(convex_contact(PosedConvex(triangle), solid.posed()).point);
-        return true;
+        return !stop.stop_requested();
     });
     return points;
 }
@@ -144,12 +145,14 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
         ++count;
         return !request.stop.stop_requested();
     });
+    if (request.stop.stop_requested()) return;  // the count is not that of all triangles
     // A solid that errs says how deep, but not whether.
     set_depth_of_mesh_and_solid(mesh, solid, 0, finding);
     if (finding.depth_kind == DepthKind::at_least) finding.depth = std::max(finding.depth, deepest);
     const bool hull = solid.solid.core == ConvexSolid::Core::points && solid.solid.radius == 0;
     if (finding.depth <= request.touching_depth && hull && mesh.tree.parts.any_closed) {
-        finding.depth = deepest_in_mesh(mesh, 0, middles_of(solid, some_contact_points(mesh, solid, count)));
+        finding.depth =
+            deepest_in_mesh(mesh, 0, middles_of(solid, some_contact_points(mesh, solid, count, request.stop)));
         finding.depth_kind = DepthKind::at_least;
     }
     if (finding.depth > request.touching_depth && finding.depth_kind == DepthKind::at_least &&

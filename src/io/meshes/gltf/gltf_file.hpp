@@ -36,7 +36,7 @@ public:
     /// Reads a file without its buffers.
     /// Throws: Error{bad_input} for a file that is cut, or whose JSON is wrong; Error{io_failed, cancelled}.
     GltfFile(const std::string& path, const std::stop_token& stop);
-    /// The same with the content of a file.
+    /// Like the constructor above, with the content of the file.
     GltfFile(std::string path, Buffer<std::byte> content, const std::stop_token& stop);
 
     const std::string& path() const { return path_; }
