@@ -27,6 +27,7 @@ class Page {
   private timeline: Timeline | null = null;
   private live: LiveScene | null = null;
   private readable = false;
+  private listed = false;  // jobs and scenes of a server have come, perhaps before view.json
   private wake: () => void = () => undefined;
   private lastTable = 0;
   private tableTimer = 0;
@@ -83,7 +84,7 @@ class Page {
     byId('title').textContent = view.title || 'octopair server';
     document.title = view.title ? `${view.title} – octopair` : 'octopair server';
     for (const id of ['zoom-all', 'toggle-options', 'toggle-side', 'copy-link', 'open-help']) byId(id).hidden = true;
-    showServer([], []);
+    if (!this.listed) showServer([], []);
   }
 
   private async startScene(view: View, stage: Promise<Stage>): Promise<void> {
@@ -184,6 +185,7 @@ class Page {
     if (event.event === 'closed') this.noteEnd(`The ${this.live ? 'simulation' : 'program'} has ended. The page keeps its last frame.`);
     if (event.event === 'waiting') showBanner(event.message ?? 'The server does not answer.');
     if (event.event === 'jobs') {
+      this.listed = true;
       showBanner('');
       showServer(event.jobs ?? [], event.scenes ?? []);
     }

@@ -408,6 +408,18 @@ test('jobs and scenes of a server', 'server', 0, async ({page}) => {
   assert.deepEqual(await accessibility(page), []);
 });
 
+test('jobs that come before the view', 'server', 0, async ({page, scene}) => {
+  await page.route('**/view.json', async route => {
+    await waitForData(page, 'jobs', '3');
+    scene.silent = true;
+    await route.continue();
+  });
+  await page.reload();
+  await page.waitForFunction(() => document.title.startsWith('server'));
+  assert.equal(await data(page, 'jobs'), '3');
+  assert.match(await text(page, '#job-rows'), /the input has no boxes/);
+});
+
 test('a server that does not answer for a while', 'server', 0, async ({page, scene}) => {
   await waitForData(page, 'jobs', '3');
   assert.ok(await page.locator('#banner').isHidden());
