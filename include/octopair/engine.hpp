@@ -11,8 +11,8 @@
 //           allowed there.
 // Engines   Each engine derives from Engine: engine/threads, engine/processes, engine/mpi, service/client. The command chooses
 //           one in cli/engine_choice.cpp.
-// Cost      O((n log n + pairs) / k) time on k threads. The local engine needs at most 56 bytes per object besides input and
-//           output; docs/engines.md has the numbers of the others.
+// Cost      O((n log n + pairs) / k) time on k threads. docs/memory.md has the bytes per object of each engine, besides input
+//           and output.
 #pragma once
 
 #include <cstddef>

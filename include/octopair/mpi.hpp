@@ -11,9 +11,9 @@
 // Threads   Requires MPI_Init_thread: MPI_THREAD_FUNNELED for calls from the main thread, MPI_THREAD_SERIALIZED for calls from
 //           other threads, MPI_THREAD_MULTIPLE for jobs.
 // Jobs      Jobs run in the order of submission, which must be the same on all ranks. A later direct call waits for them.
-// Memory    About 130 bytes per object of a rank's float32 boxes, besides input and output. Lists in ascending order are
-//           held twice for a while. A streaming rank holds at most Options::buffer_bytes of pairs, or the pairs of 1/2^14 of
-//           the objects if these are more.
+// Memory    Proportional to the rank's objects, besides input and output (docs/memory.md has the bytes). Lists in ascending
+//           order are held twice for a while. A streaming rank holds at most Options::buffer_bytes of pairs, or the pairs of a
+//           small part of the objects if these are more.
 // CMake     Link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
 #pragma once
 

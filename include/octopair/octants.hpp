@@ -92,7 +92,7 @@ struct OctantOptions {
 /// does not suffice, or for more than 2^32 - 1 objects; Error{cancelled} within 200 ms after a stop request, unless the list is
 /// made before.
 /// Complexity: time of the search without its scan, and about 10 ns per entry, divided among the threads. The result has 4 bytes
-/// per entry, 4 per object and 96 per octant. While the list is made, the octree takes at most 44 bytes per object more.
+/// per entry, 4 per object and 96 per octant. While the list is made, the octree takes the memory of a search, too.
 Octants list_octants(const Objects& objects, const OctantOptions& options = {}, std::stop_token stop = {});
 
 }  // namespace octopair

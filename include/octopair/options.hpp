@@ -21,13 +21,13 @@ struct Options {
     std::optional<std::uint64_t> limit = {};  ///< maximum number of pairs; the first ones in `order` are returned
     std::uint64_t buffer_bytes = 1ull << 30;  ///< maximum memory for pairs while streaming; 1 MiB at least is used
     ProgressSink progress = {};               ///< may be empty; an exception ends the call and propagates to the caller
-    /// True: a second algorithm that shares no code with the octree checks the result (docs/design.md, "Certificates").
+    /// True: a second algorithm that shares no code with the octree checks the result (docs/proofs.md, "Certificates").
     /// A list that fails the check is emptied. A stream fails before a wrong pair reaches the sink; a missing pair fails it at
     /// its end at the latest.
     /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} on an MPI engine, because no rank has all
     /// objects.
-    /// Complexity: some microseconds per object, divided among the threads; often ten times the call. 33 bytes per object (64
-    /// for float64) in this process, and 12 more in octal order, for any number of pairs.
+    /// Complexity: some microseconds per object, divided among the threads; often ten times the call. Memory of this process that
+    /// does not depend on the number of pairs (docs/memory.md).
     bool verify = false;
 };
 

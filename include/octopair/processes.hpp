@@ -7,7 +7,7 @@
 // Lifetime  Workers end with the engine, and within two seconds after the application ends for any reason.
 // Copies    Boxes are copied to shared memory, unless Engine::allocate_boxes allocated them. Large results are not copied: a
 //           PairList keeps the memory that workers wrote.
-// Memory    About 60 bytes per object besides input and output, and the copy of the boxes. Kept until the engine is destroyed.
+// Memory    The octree and the copy of the boxes (bytes per object: docs/memory.md). Kept until the engine is destroyed.
 // Fork      An engine belongs to the process that made it. In a forked process its calls throw Error{usage}.
 // System    Linux 5.4 or later. CMake: link octopair::processes.
 #pragma once

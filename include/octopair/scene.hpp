@@ -14,8 +14,8 @@
 //           A scene that was moved from may only be destroyed or assigned to.
 // Threads   One thread at a time, also for queries.
 // Cost      A step's time depends on what moved; if most objects moved, it is that of a full detection. The first step in which
-//           few moved builds an octree, which takes about two full detections; a query right after a step builds it, too. At
-//           most about 120 bytes per object and 16 per pair. docs/results.md has measurements.
+//           few moved builds an octree, which takes about two full detections; a query right after a step builds it, too.
+//           docs/memory.md bounds the bytes per object and per pair. docs/results.md has measurements.
 #pragma once
 
 #include <compare>
@@ -70,7 +70,7 @@ struct SceneOptions {
     std::function<void(std::uint64_t bytes)> room_for_pairs = {};
     /// Length by which the scene enlarges the boxes that it searches, on each side. While an object stays within its enlarged box, a
     /// step does not search around it. pairs() does not depend on the slack. Saves time if most objects move in each step, but
-    /// little: a good slack is 20 to 100 times what they move in a step. Takes 24 bytes per object (float64: 48), and 16 per pair.
+    /// little: a good slack is 20 to 100 times what they move in a step. Takes further memory per object and pair (docs/memory.md).
     /// 0: no slack.
     double slack = 0;
 };
@@ -121,7 +121,7 @@ public:
     /// pairs(). They depend on how objects moved before. Valid until the next step.
     const PairList& enlarged_pairs();
 
-    /// Compares pairs() with the pairs that a second algorithm finds. It shares no code with the octree (docs/design.md, "Certificates").
+    /// Compares pairs() with the pairs that a second algorithm finds. It shares no code with the octree (docs/proofs.md, "Certificates").
     /// Call it directly after step(), because the pairs are those of the last step.
     /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} if there was no step yet, or if an object was added,
     /// changed or removed since; Error{resource_limit} if the memory does not suffice; Error{cancelled} within 200 ms after a stop request.

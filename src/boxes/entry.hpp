@@ -6,7 +6,7 @@
 //   An octant reports two of its entries only if (a.mask & b.mask) == 0. The bits of `mask`:
 //     bits 0..2  class bits, one for each axis: the box begins before this octant, or before an octant around it, up to the
 //                outermost octree. Octants below keep a bit that is set. So an octant reports a pair exactly if it holds the
-//                low corner of the boxes' intersection, for any nesting of octrees (proof: docs/design.md).
+//                low corner of the boxes' intersection, for any nesting of octrees (proof: docs/proofs.md).
 //     bit 3, 4   the object belongs to the first, the second set of a join. Pairs within a set do not count.
 //     bit 5      the object is fixed in a scene. Pairs of two fixed objects do not count.
 //

@@ -20,7 +20,7 @@ namespace octopair::service {
 
 namespace {
 
-/// Memory of a search in bytes per object, besides input and result (docs/results.md).
+/// Memory of a search in bytes per object, besides input and result. More than threads or workers take (docs/memory.md).
 constexpr std::uint64_t working_bytes = 80;
 
 /// Returns Options::buffer_bytes of a search. The memory budget does not count this buffer, which each engine keeps.

@@ -52,7 +52,7 @@ struct Sizes {
     Real coordinate;     ///< largest absolute value of a coordinate
 };
 
-/// Returns the errors that the narrow phase may make (docs/design.md, "Certificates").
+/// Returns the errors that the narrow phase may make (docs/proofs.md, "Certificates").
 Decision::Accuracy accuracy_of(const JudgedPair& pair, const Sizes& sizes) {
     const Real small = std::min(sizes.first, sizes.second), large = std::max(sizes.first, sizes.second);
     const Real apart = length(translation_of(pair.a) - translation_of(pair.b));

@@ -1,4 +1,4 @@
-// judge_pair(): checks the decision of the narrow phase about one pair of objects by certificates. docs/design.md ("Certificates") lists
+// judge_pair(): checks the decision of the narrow phase about one pair of objects by certificates. docs/proofs.md ("Certificates") lists
 // them, and the decisions that have none.
 #pragma once
 
