@@ -8,11 +8,13 @@ header uses the layer of this header. The folders of bench/ that octopair-bench 
 src/ may use these layers. Public headers use only public headers and the standard library. Headers of an adapter use only
 public headers, headers of their host, and the standard library. Sources of the Python package and of the interface for C use only public
 headers, pybind11, Python and the system's headers. Prints one line for each
-include that breaks a rule, and exits 1. With --print, prints the current stack for docs/design.md.
+include that breaks a rule, and if the stack of docs/design.md is an older one, and exits 1. With --print, prints the current stack.
 """
 import pathlib
 import re
 import sys
+
+DESIGN = "docs/design.md"
 
 # Layers from the bottom up: their purpose, and their public headers.
 LAYERS = {
@@ -242,11 +244,14 @@ def check(root):
     return complaints, used, count
 
 
-def print_stack(used):
+def stack_of(used):
+    """Returns the stack as text, from top to bottom."""
     order = list(LAYERS)
+    lines = []
     for layer in reversed([layer for layer in order if layer in used]):
         names = sorted(used[layer], key=lambda n: (n[0] == "<", order.index(n) if n in order else 0, n))
-        print(f"    {layer:<19} {LAYERS[layer][0]:<42} uses {' '.join(names) or '-'}")
+        lines.append(f"    {layer:<19} {LAYERS[layer][0]:<42} uses {' '.join(names) or '-'}\n")
+    return "".join(lines)
 
 
 def main():
@@ -256,10 +261,13 @@ def main():
     for found, files in (check_adapters(root), check_bindings(root)):
         complaints += found
         count += files
+    printing = "--print" in sys.argv
+    if not printing and stack_of(used) not in (root / DESIGN).read_text(encoding="utf-8"):
+        complaints.append(f"{DESIGN}: its stack of layers differs from that of the files; copy what include_stack.py --print prints")
     for complaint in complaints:
         print(complaint)
-    if "--print" in sys.argv:
-        print_stack(used)
+    if printing:
+        print(stack_of(used), end="")
     elif not complaints:
         print(f"{count} files, every include runs down the stack")
     return 1 if complaints or count == 0 else 0

@@ -1,5 +1,6 @@
 // The table that maps each ErrorCode to its representations outside C++: a name, the exit status of the program, and the gRPC
 // status of a call to a server.
+// Start here to add a new error code.
 #pragma once
 
 #include <array>

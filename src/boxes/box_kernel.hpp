@@ -1,4 +1,5 @@
 // Checks of input boxes, and functions that copy boxes or round them outward, many at once.
+// Start here to change what NaN and infinity do.
 #pragma once
 
 #include <array>

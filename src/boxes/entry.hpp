@@ -1,4 +1,5 @@
 // Entry: what an octant stores of an object's box, and the rule that reports each pair once.
+// Start here to change which octant reports a pair.
 //
 // Invariants
 //   `min` and `max` are the caller's box in float32, moved to a near origin, widened by margin and padding, and rounded outward

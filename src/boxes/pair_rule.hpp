@@ -1,4 +1,5 @@
 // PairRule: decides which overlapping entries are pairs.
+// Start here to change which boxes count as a pair.
 #pragma once
 
 #include <algorithm>

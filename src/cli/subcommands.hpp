@@ -1,5 +1,6 @@
 // Subcommands of octopair. Each function adds one subcommand to the parser. Its callback sets `action`, which runs after
 // parsing and returns the exit status. Callbacks and actions may throw Error.
+// Start here to add a new subcommand.
 #pragma once
 
 #include "cli/command/command.hpp"

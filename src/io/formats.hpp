@@ -1,4 +1,5 @@
 // File formats: the one place that decides which format a file has and who reads it.
+// Start here to add a new format of results.
 //
 // - A mark at the beginning of the content decides first, the ending of the name second (formats/content_marks.hpp). Case is ignored.
 // - formats/format_table.cpp lists all formats.

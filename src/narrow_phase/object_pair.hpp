@@ -1,4 +1,5 @@
 // Pair tests of two objects of any shapes: whether they meet, their distance, and their contacts.
+// Start here to change how two shapes are tested.
 //
 // A closed mesh or a convex solid includes its interior: an object inside it meets it.
 #pragma once

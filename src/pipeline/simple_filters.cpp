@@ -1,5 +1,6 @@
 // Filters that use no geometry: a condition of the caller, groups and masks, ignored pairs, parents. The filters of the
 // command `detect` are chosen in cli/detect/filter_chain.cpp.
+// Start here to add a new filter.
 #include <algorithm>
 #include <bit>
 #include <utility>

@@ -1,4 +1,5 @@
 // Kind: a kind of sample scene, and the function that places its objects. Internal to samples.
+// Start here to add a new scene of generate.
 #pragma once
 
 #include <cstdint>

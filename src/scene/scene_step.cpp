@@ -1,5 +1,6 @@
 // Steps of a scene. A step is incremental (searches around changed objects) if that is expected to be cheaper than a full
 // detection; otherwise it is full (searches all objects).
+// Start here to change when a step of a Scene searches around changes.
 #include <algorithm>
 #include <chrono>
 #include <cstring>

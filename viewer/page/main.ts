@@ -1,4 +1,5 @@
 // Start of the page: waits for the scene, reads it and hands it to the parts that show it.
+// Start here to change the page of the viewer.
 import * as THREE from 'three';
 import {App} from './app.ts';
 import {commands, copyLink, openHelp} from './commands.ts';

@@ -1,5 +1,6 @@
 // The options of `octopair detect`. Those of filters and exact stages are in pipeline_options.hpp. `octopair submit` shares the
 // options of the scene, and of the order and number of pairs.
+// Start here to add a new option of detect.
 #pragma once
 
 #include "cli/detect/detection.hpp"

@@ -1,4 +1,5 @@
 // Timeouts of the client and its workers, and limits on failures of workers.
+// Start here to change the timeouts of workers.
 //
 // A worker that is stopped by a signal is killed at the next check. A worker that computes for long is never killed: no time
 // limits a share.

@@ -1,3 +1,4 @@
+// Start here to add a new mesh format.
 #include "io/formats/format_table.hpp"
 
 #include <algorithm>

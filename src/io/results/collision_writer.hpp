@@ -1,4 +1,5 @@
 // Writes result files of collisions: .jsonl and .csv (docs/formats.md). The collisions are streamed, not collected.
+// Start here to add a new column of results.
 //
 //   jsonl  {"a":0,"b":5,"a_name":"left","b_name":"right","class":"penetrating","depth":0.5,"contacts":[...]}; unknown keys
 //          are left out

@@ -1,4 +1,5 @@
 // SplitRule: decides on a sample of the scene which octants of a linear octree are split.
+// Start here to change when an octant is split.
 //
 // An octant is split if it is crowded: it holds too many objects, or a sweep along its best axis would test too many. It is
 // not split if the split

@@ -1,6 +1,7 @@
 // SortKey: the low end of a box on an axis and the box's position in a list, packed into one integer. Keys sort in the order of
 // a sweep: by low end, ties by position. Which object of a pair with equal low ends comes first is decided by SweepKind
 // (sweep.hpp) and Orientation (pair_maker.hpp).
+// Start here to change how boxes with equal starts are ordered.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,5 @@
 // SceneQueries: answers many queries (queries.hpp) at once with a scene's octree.
+// Start here to add a new query of Scene.
 //
 // Invariants
 //   The octree yields candidates. The boxes in the object table decide.

@@ -1,4 +1,5 @@
 // ServerOptions: address, engines, access and limits of a server.
+// Start here to add a new limit of the server.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
 // FaceCutter: cuts faces with any number of corners into triangles.
+// Start here to change how faces are cut into triangles.
 //
 // - Everything is decided exactly, in the plane of two coordinate axes across which the area vector of the outline is largest.
 // - A convex face is cut from its first corner. Other faces are cut by a sweep (outline_sweep.hpp): the triangles are the inside of the
