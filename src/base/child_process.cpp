@@ -69,7 +69,7 @@ OCTOPAIR_NOT_SANITIZED bool arrange_descriptors(const Start& start) {
 /// The result becomes the exit status.
 OCTOPAIR_NOT_SANITIZED int run_child(void* argument) {
     Start& start = *static_cast<Start*>(argument);
-    // After this, the end of the parent ends this process. It may have ended before.
+    // The system kills this process when its parent ends. The parent may have ended before this request: then getppid() differs.
     if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != start.parent) {
         start.error = ESRCH;
         return 127;

@@ -24,7 +24,7 @@ struct ChildProgram {
 };
 
 /// Starts a program in a process group of its own, with no signal blocked or ignored. The system kills it when the calling thread ends.
-/// Returns its process id, or -1 with `errno`. Does not copy the memory of this process. Thread safety: safe.
+/// Returns its process id, or -1 with `errno`. Does not copy the memory of this process. Thread safety: any thread may call it.
 OCTOPAIR_PRIVATE_EXPORT pid_t start_child(const ChildProgram& program);
 
 }  // namespace octopair

@@ -63,7 +63,7 @@ public:
     void write_count(std::uint64_t) override {}
 };
 
-/// Runs all shares on the calling thread and gives their pairs to one writer. A share uses it to run steps within itself.
+/// Runs all shares on the calling thread and gives their pairs to one writer. A share that has steps of its own runs them in this way.
 class SerialExecutor final : public Executor {
 public:
     explicit SerialExecutor(ShareWriter& writer) : writer_(writer) {}

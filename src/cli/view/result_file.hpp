@@ -12,8 +12,8 @@ namespace octopair::cli {
 
 struct ResultFile {
     ResultFrames frames;
-    bool moving = false;            ///< true if rows have frames, or the name of the file has one
-    std::uint64_t first_frame = 0;  ///< that of the name, as in pairs.000003.npy; frame 0 of `frames` is this frame
+    bool moving = false;            ///< true if rows or the name of the file have a frame number
+    std::uint64_t first_frame = 0;  ///< frame number in the name, as in pairs.000003.npy: that of the first of `frames`
     std::map<std::uint32_t, std::string> names;
     std::uint64_t objects = 0;  ///< 1 more than the largest index
 };

@@ -14,7 +14,7 @@ bool is_stream(const std::string& path);
 /// Returns a descriptor of a file in memory with the content of a stream, read to its end. Each process reads a stream once.
 /// Requires: is_stream(path).
 /// Throws: Error{io_failed, resource_limit}.
-/// Thread safety: safe. Blocks until the writer closes the stream.
+/// Thread safety: any thread may call it. Blocks until the writer closes the stream.
 Descriptor open_stream_copy(const std::string& path);
 
 }  // namespace octopair::io

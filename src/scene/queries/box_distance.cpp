@@ -71,8 +71,8 @@ Bounds careful_distance(const Gaps& gaps) {
     return {root + (correction - error * root), root + (correction + error * root)};
 }
 
-/// Returns the float64 nearest to the square root of the sum of squares, searched from `guess` on. Non-negative float64
-/// numbers have the order of their bits as integers.
+/// Returns the float64 nearest to the square root of the sum of squares. `guess`: a number near the root, where the search begins.
+/// The bits of non-negative float64 numbers, read as integers, have the order of the numbers. So a step of the search is one bit pattern.
 double nearest_root(const Gaps& gaps, double guess) {
     constexpr std::uint64_t infinity = 0x7FF0'0000'0000'0000;
     auto bits = std::bit_cast<std::uint64_t>(guess);

@@ -20,8 +20,8 @@ v1::Failure failure_of(const Error& error);
 grpc::Status status_of(const Error& error);
 grpc::Status status_of(const v1::Failure& failure);
 
-/// Throws the Error that a status describes. A status without details is of gRPC itself: the server is unreachable, the caller
-/// has no permission, or the server is not octopair. `server` names it in the message. Requires: the status is not OK.
+/// Throws the Error that a status describes. gRPC itself makes statuses without details: the server is unreachable, the caller has no
+/// permission, or the server is not octopair. `server`: name of the server in the message. Requires: the status is not OK.
 [[noreturn]] void throw_status(const grpc::Status& status, const std::string& server);
 
 /// Returns whether a retry of the call may succeed, because the server was unavailable or shuts down.

@@ -31,12 +31,13 @@ public:
 
     /// Returns the address with the actual port.
     const Address& address() const;
-    /// Thread safety: safe.
+    /// Thread safety: any thread may call it.
     ServerLoad load() const;
-    /// Returns how often the server has checked its deadlines: ten times a second while it works. Thread safety: safe.
+    /// Returns how often the server has checked its deadlines: ten times a second while it works. Thread safety: any thread may call it.
     std::uint64_t beats() const;
-    /// Reads the files of tokens, roles, keys and certificates again (Access::reload, Credentials::reload). Thread safety: one thread at a
-    /// time. Throws: as the constructor, for these files; then the files of TLS, and the tokens with the roles, each stay or change together.
+    /// Reads the files of tokens, roles, keys and certificates again (Access::reload, Credentials::reload). Thread safety: one thread at
+    /// a time. Throws: as the constructor, for these files; then the files of TLS, and the tokens with the roles, each stay or change
+    /// together.
     void reload();
     /// Refuses new calls, waits for running jobs for at most `grace` (default: ServerOptions::grace), then cancels the rest.
     void drain(std::optional<std::chrono::milliseconds> grace = {});

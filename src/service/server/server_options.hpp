@@ -18,16 +18,17 @@ namespace octopair::service {
 
 /// Limits of a server; 0: no limit. A refusal names the limit and its value.
 struct ServerLimits {
-    std::uint64_t objects = 50'000'000;                  ///< of a job or a scene
-    std::uint64_t input_bytes = std::uint64_t(4) << 30;  ///< of a job
-    std::uint64_t pairs = 500'000'000;                   ///< of the stored result of a job, and of a scene
+    std::uint64_t objects = 50'000'000;                  ///< objects of a job or of a scene
+    std::uint64_t input_bytes = std::uint64_t(4) << 30;  ///< bytes of the input of a job
+    std::uint64_t pairs = 500'000'000;                   ///< stored pairs of a job or of a scene
     std::uint64_t jobs = 1000;  ///< jobs that are uploading, queued or running, and open scenes
     std::uint64_t jobs_per_client = 200;
     std::uint64_t connections = 1000;
     double job_seconds = 600;                             ///< run time of a job or of a step of a scene
-    std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< of all inputs, results and searches together
+    std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< memory of all inputs, results and searches together
     std::uint64_t state_bytes = std::uint64_t(16) << 30;  ///< size of the state folder
-    /// Parts of the last two amounts that one client may take. Default: half, on a server with tokens or client certificates; otherwise all.
+    /// Parts of the last two amounts that one client may take. Default: half, on a server with tokens or client certificates;
+    /// otherwise all.
     std::optional<std::uint64_t> memory_bytes_per_client = {}, state_bytes_per_client = {};
     /// Connections of one client over TCP. Default as above.
     std::optional<std::uint64_t> connections_per_client = {};

@@ -10,7 +10,7 @@ namespace octopair {
 
 /// Runs `work` on the spawner thread and waits for it. In a process that was forked without that thread, runs it on this thread.
 /// Requires: `work` does not throw. Throws: std::system_error if the thread cannot be started.
-/// Thread safety: safe; one function runs at a time.
+/// Thread safety: any thread may call it; one function runs at a time.
 void run_on_spawner(const std::function<void()>& work);
 
 }  // namespace octopair

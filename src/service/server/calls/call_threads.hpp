@@ -9,7 +9,7 @@
 
 namespace octopair::service {
 
-/// The destructor waits for all threads. Thread safety: safe.
+/// The destructor waits for all threads. Thread safety: any thread may call it.
 class CallThreads {
 public:
     CallThreads() = default;

@@ -17,7 +17,7 @@
 
 namespace octopair::service {
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class ResultReader {
 public:
     ResultReader() : thread_([this] { work(); }) {}

@@ -14,7 +14,7 @@ namespace octopair::service {
 
 using AnyBoxes = std::variant<BoxArray<Box3f>, BoxArray<Box3d>>;
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class ArrayPool {
 public:
     /// Returns a pooled or new array of at least `count` boxes in memory of `engine`. Throws: Error.

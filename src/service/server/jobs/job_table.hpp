@@ -13,7 +13,7 @@ namespace octopair::service {
 
 class ServerJob;
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class JobTable {
 public:
     /// Adds a job whose input is complete, and returns the job. If its owner already has a job with this id and the same hash,

@@ -12,7 +12,7 @@ namespace octopair::service {
 /// Makes an engine with `width` threads or workers.
 using EngineMaker = std::function<std::unique_ptr<Engine>(unsigned width)>;
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class KeptEngine {
 public:
     KeptEngine(const EngineMaker& maker, unsigned width) : maker_(maker), width_(width), engine_(maker_(width_)) {}

@@ -24,7 +24,7 @@ public:
     virtual bool is_over() const { return false; }
 };
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class Watchdog {
 public:
     Watchdog();

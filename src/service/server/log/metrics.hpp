@@ -21,7 +21,7 @@ struct Levels {
     std::uint64_t queue = 0, connections = 0, connections_refused = 0, memory_bytes = 0, worker_faults = 0;
 };
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class Metrics {
 public:
     Metrics();

@@ -34,7 +34,7 @@ struct Sent {
     std::string outcome;  ///< "complete", or why the call ended before
 };
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class ServerLog {
 public:
     explicit ServerLog(std::shared_ptr<spdlog::logger> log) : log_(std::move(log)) {}

@@ -11,7 +11,7 @@
 
 namespace octopair::service {
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class Throttle {
 public:
     using Clock = std::chrono::steady_clock;

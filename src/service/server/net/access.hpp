@@ -35,13 +35,13 @@ public:
     };
     /// Reads the files again. Throws: as the constructor.
     std::shared_ptr<const Files> read() const;
-    /// Uses files that read() returned for calls that are admitted later. Thread safety: safe.
+    /// Uses files that read() returned for calls that are admitted later. Thread safety: any thread may call it.
     void use(std::shared_ptr<const Files> files);
-    /// Returns the clients "token:NAME" of the role file for which no token has this name. Thread safety: safe.
+    /// Returns the clients "token:NAME" of the role file for which no token has this name. Thread safety: any thread may call it.
     std::vector<std::string> clients_without_token() const;
     bool has_tokens() const { return !token_file_.empty(); }
     /// Sets `caller` to the authenticated caller, or returns why the caller is refused. Takes the same time for every wrong token.
-    /// Thread safety: safe.
+    /// Thread safety: any thread may call it.
     grpc::Status identify(const grpc::ServerContextBase& context, Caller& caller) const;
 
 private:

@@ -249,7 +249,7 @@ void Listener::take(Descriptor connection) {
     }
 }
 
-/// Watches a TCP connection until a call of it is admitted.
+/// Watches a TCP connection until the server admits the first call on this connection.
 void Listener::watch(Descriptor connection) {
     const auto peer = peer_of(connection);
     if (!peer) return;  // the connection has ended

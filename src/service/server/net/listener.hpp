@@ -56,14 +56,14 @@ public:
     void start(Terms terms);
     /// Stops accepting connections.
     void stop();
-    /// Notes that `client` makes a call from this peer (ConnectionWatch). Thread safety: safe.
+    /// Notes that `client` makes a call from this peer (ConnectionWatch). Thread safety: any thread may call it.
     ConnectionWatch::Admission make_known(const std::string& peer, const ConnectionWatch::Client& client);
-    /// Note that a call begins or ends (ConnectionWatch). Thread safety: safe.
+    /// Note that a call begins or ends (ConnectionWatch). Thread safety: any thread may call it.
     bool note_begin(std::uint64_t number);
     void note_end(std::uint64_t number, bool reset);
-    /// Notes that a call from this peer was refused, because the server does not know who makes it. Thread safety: safe.
+    /// Notes that a call from this peer was refused, because the server does not know who makes it. Thread safety: any thread may call it.
     void note_refused(const std::string& peer);
-    /// Returns whether connections wait for that. Thread safety: safe.
+    /// Returns whether connections wait for that. Thread safety: any thread may call it.
     bool awaits_calls() const { return unknown_ > 0; }
     std::uint64_t connections() const { return connections_; }
     /// Returns the number of connections that were refused or cut.

@@ -80,7 +80,7 @@ public:
 
     /// Stores the numbers of the last step, for report().
     void note_step(const StepNumbers& numbers);
-    /// Returns whether a watcher waits for the state after the last step. Thread safety: safe.
+    /// Returns whether a watcher waits for the state after the last step. Thread safety: any thread may call it.
     bool is_wanted() const {
         return steps_.load(std::memory_order_relaxed) > wanted_after_.load(std::memory_order_relaxed);
     }

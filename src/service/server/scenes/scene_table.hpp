@@ -14,7 +14,7 @@ namespace octopair::service {
 
 class ScenePublisher;
 
-/// Thread safety: safe.
+/// Thread safety: any thread may call it.
 class SceneTable {
 public:
     void enter(const std::shared_ptr<ScenePublisher>& scene);
