@@ -57,7 +57,7 @@ def complaints_of(root):
         elif starts.get(start) != sentence_of(task):
             yield f"{start}:1: the head lacks '// {sentence_of(task)}' (HACKING.md:{number})"
         for name in filter(FILE_NAME.match, CODE_SPAN.findall(" ".join(cells[2:]))):
-            if not (root / name).is_file() and not (root / start).with_name(name).is_file():
+            if not (root / name).is_file() and not (root / start).parent.joinpath(name).is_file():
                 yield f"HACKING.md:{number}: no file {name}"
     if not named:
         yield "HACKING.md: no table 'Where to start'"

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "cli/view/result_file.hpp"
+#include "io/results/result_file.hpp"
 #include "octopair/error.hpp"
 
 namespace {
@@ -20,10 +20,10 @@ void require(bool holds) {
     if (!holds) std::abort();
 }
 
-void check(const cli::ResultFile& result) {
+void check(const io::ResultFile& result) {
     require(result.frames.size() >= 1);
     for (std::uint64_t number = 0; number < std::min<std::uint64_t>(result.frames.size(), 50); ++number) {
-        const cli::ResultFrame frame = result.frames.frame(number);
+        const io::ResultFrame frame = result.frames.frame(number);
         require(frame.findings.empty() || frame.findings.size() == frame.pairs.size());
         require(std::is_sorted(frame.pairs.begin(), frame.pairs.end()));
         require(std::adjacent_find(frame.pairs.begin(), frame.pairs.end()) == frame.pairs.end());
@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     const std::string path = "/tmp/octopair-fuzz-" + std::to_string(::getpid()) + endings[bytes[0] % 3];
     std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes + 1), std::streamsize(size - 1));
     try {
-        if (cli::is_result(path)) check(cli::read_result(path, {}));
+        if (io::is_result(path)) check(io::read_result(path, {}));
     } catch (const Error& error) {
         require(error.code() == ErrorCode::bad_input || error.code() == ErrorCode::resource_limit);
         require(std::string_view(error.what()).find('\n') == std::string_view::npos);

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "cli/view/loaded_view.hpp"
-#include "cli/view/result_file.hpp"
 #include "cli/view/shown_scene.hpp"
+#include "io/results/result_file.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -31,12 +31,12 @@ bool is_empty(const Box3d& box) { return !(box.min[0] <= box.max[0]); }
 
 class PlacesFinder final : public viewer::FrameFinder {
 public:
-    explicit PlacesFinder(ResultFile result) : result_(std::move(result)) {}
+    explicit PlacesFinder(io::ResultFile result) : result_(std::move(result)) {}
 
     std::uint64_t frames() const override { return result_.frames.size(); }
 
     viewer::FrameData find(std::uint64_t number, const ProgressSink&) override {
-        ResultFrame frame = result_.frames.frame(number);
+        io::ResultFrame frame = result_.frames.frame(number);
         auto boxes = std::make_shared<std::vector<Box3d>>(std::size_t(result_.objects), empty_box());
         Box3d all = empty_box();
         for (std::size_t i = 0; i < frame.findings.size(); ++i) {
@@ -68,13 +68,13 @@ public:
     }
 
 private:
-    ResultFile result_;
+    io::ResultFile result_;
 };
 
 }  // namespace
 
 LoadedView load_result(const ViewRequest& request, const std::stop_token& stop) {
-    ResultFile result = read_result(request.result, stop);
+    io::ResultFile result = io::read_result(request.result, stop);
     if (result.objects > max_placed_objects) {
         throw Error(ErrorCode::resource_limit,
                     fmt::format("{}: object {}: without the scene, at most {} objects are shown; name the scene, too",

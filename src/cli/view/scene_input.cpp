@@ -7,9 +7,9 @@
 #include "base/timed.hpp"
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/view/loaded_view.hpp"
-#include "cli/view/result_file.hpp"
 #include "cli/view/shown_scene.hpp"
 #include "io/files/failure.hpp"
+#include "io/results/result_file.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/pair_list.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
@@ -105,7 +105,7 @@ private:
 /// The pairs of a result, on the boxes of a scene.
 class ResultFinder final : public viewer::FrameFinder {
 public:
-    ResultFinder(std::shared_ptr<const Inputs> inputs, ResultFile result)
+    ResultFinder(std::shared_ptr<const Inputs> inputs, io::ResultFile result)
         : inputs_(std::move(inputs)), result_(std::move(result)) {}
 
     std::uint64_t frames() const override { return inputs_->set.scene.frames; }
@@ -116,7 +116,7 @@ public:
         data.boxes = objects.boxes;
         data.padding = objects.padding;
         if (frame < result_.first_frame) return data;
-        ResultFrame found = result_.frames.frame(frame - result_.first_frame);
+        io::ResultFrame found = result_.frames.frame(frame - result_.first_frame);
         data.pairs = std::move(found.pairs);
         data.findings = std::move(found.findings);
         data.pair_count = data.pairs.size();
@@ -125,7 +125,7 @@ public:
 
 private:
     std::shared_ptr<const Inputs> inputs_;
-    ResultFile result_;
+    io::ResultFile result_;
 };
 
 std::string title_of(const std::vector<std::string>& paths) {
@@ -138,7 +138,7 @@ std::string title_of(const std::vector<std::string>& paths) {
 }
 
 /// Throws: Error{bad_input} if a result has objects or frames that a scene does not have.
-void check_result(const ResultFile& result, const InputSet& set, const std::string& path) {
+void check_result(const io::ResultFile& result, const InputSet& set, const std::string& path) {
     if (result.objects > set.scene.objects) {
         io::refuse(path, fmt::format("object {}: the scene has only {} objects; is it the scene of this result?",
                                      result.objects - 1, set.scene.objects));
@@ -183,7 +183,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
         view.finder = std::make_unique<SearchFinder>(inputs);
         return view;
     }
-    ResultFile result = read_result(request.result, stop);
+    io::ResultFile result = io::read_result(request.result, stop);
     if (!inputs->set.scene.moving) result.first_frame = 0;  // a number in the name is no frame, then
     check_result(result, inputs->set, request.result);
     view.contents.contacts = result.frames.has_contacts();

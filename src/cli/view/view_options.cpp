@@ -10,8 +10,8 @@
 #include "cli/command/option_values.hpp"
 #include "cli/detect/detect_options.hpp"
 #include "cli/server/server_choice.hpp"
-#include "cli/view/result_file.hpp"
 #include "io/formats.hpp"
+#include "io/results/result_file.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -97,7 +97,7 @@ void set_stage(DetectRequest& request) {
 void find_result(ViewRequest& request) {
     std::vector<std::string> scenes;
     for (const std::string& input : request.detect.inputs) {
-        if (!is_result(input)) {
+        if (!io::is_result(input)) {
             scenes.push_back(input);
         } else if (request.result.empty()) {
             request.result = input;

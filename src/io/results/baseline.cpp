@@ -12,6 +12,7 @@
 #include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/json/json_text.hpp"
+#include "io/results/collision_columns.hpp"
 
 namespace octopair::io {
 
@@ -33,9 +34,9 @@ struct ObjectId {
 // First character of a key, the contact state of the two objects: unknown, apart, or in contact.
 constexpr char state_unknown = '?', state_apart = '-', state_in_contact = '+';
 
-char contact_state(const JsonFields& row) {
-    if (row.find("class") == nullptr) return state_unknown;
-    return row.text("class") == word_of(CollisionClass::clearance) ? state_apart : state_in_contact;
+char contact_state(const CollisionRecord& row) {
+    if (row.collision_class.value_or(CollisionClass::unknown) == CollisionClass::unknown) return state_unknown;
+    return meet(*row.collision_class) ? state_in_contact : state_apart;
 }
 
 /// Returns the contact states that match a collision of this class, the best match first.
@@ -50,13 +51,7 @@ std::string key_of_ids(const ObjectId& a, const ObjectId& b, bool join) {
     return fmt::format("{}{}:{}{}", state_unknown, first.size(), first, second);
 }
 
-ObjectId id_in(const JsonFields& row, const std::string& side) {
-    ObjectId id;
-    id.number = row.whole_number(side);
-    if (row.find(side + "_name") != nullptr) id.name = row.text(side + "_name");
-    if (row.find(side + "_triangle") != nullptr) id.triangle = row.whole_number(side + "_triangle");
-    return id;
-}
+ObjectId id_of(const RecordedObject& object) { return {object.number, std::string(object.name), object.triangle}; }
 
 ObjectId id_of(std::uint32_t object, const ObjectNames& names) {
     ObjectId id{object, clean_text(names.of(object)), {}};
@@ -92,10 +87,11 @@ void Baseline::read(std::string_view text, std::string_view file, const std::sto
         const nlohmann::json value = parse_json(line, place, stop);
         const JsonFields row(value, place);
         if (row.find("frame") != nullptr) row.refuse_key("frame", "results of moving scenes cannot be compared");
+        const CollisionRecord collision = read_collision(row);
         // The file may be the result of an earlier comparison. Its "gone" rows are not part of that result.
-        if (row.find("change") != nullptr && row.text("change") == word_of(Change::gone)) continue;
-        std::string key = key_of_ids(id_in(row, "a"), id_in(row, "b"), join_);
-        key[0] = contact_state(row);
+        if (collision.change == Change::gone) continue;
+        std::string key = key_of_ids(id_of(collision.a), id_of(collision.b), join_);
+        key[0] = contact_state(collision);
         unmatched_[key].push_back(lines_.size());
         lines_.emplace_back(line);
     }

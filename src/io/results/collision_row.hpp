@@ -42,6 +42,14 @@ struct CollisionNames {
 /// Change of a collision since an older result (baseline.hpp).
 enum class Change : std::uint8_t { begun, same, gone };
 
+/// Selects the fields that the collisions of a result have.
+struct CollisionForm {
+    CollisionNames names = {};
+    bool features = false;  ///< depth and contacts are known
+    bool times = false;     ///< the time of first contact is known
+    bool changes = false;   ///< the result is compared with a baseline
+};
+
 /// Consecutive rows of a result. Borrowed.
 struct CollisionRows {
     std::span<const Pair> pairs;

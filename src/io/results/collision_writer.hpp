@@ -1,5 +1,5 @@
 // Writes result files of collisions: .jsonl and .csv (docs/formats.md). The collisions are streamed, not collected.
-// Start here to add a new column of results.
+// The columns of a row: collision_columns.hpp.
 //
 //   jsonl  {"a":0,"b":5,"a_name":"left","b_name":"right","class":"penetrating","depth":0.5,"contacts":[...]}; unknown keys
 //          are left out
@@ -19,14 +19,6 @@
 
 namespace octopair::io {
 
-/// Selects the fields that the collisions of a result have.
-struct CollisionForm {
-    CollisionNames names = {};
-    bool features = false;  ///< depth and contacts are known
-    bool times = false;     ///< the time of first contact is known
-    bool changes = false;   ///< the result is compared with a baseline
-};
-
 class CollisionWriter {
 public:
     virtual ~CollisionWriter() = default;
@@ -45,8 +37,5 @@ std::unique_ptr<CollisionWriter> make_collision_csv_writer(std::unique_ptr<Outpu
 /// Returns the writer for the ending of `path`.
 /// Throws: Error{usage} for other endings, and for .npy, which can hold pairs only; Error{io_failed}.
 std::unique_ptr<CollisionWriter> make_collision_file_writer(const std::string& path, const CollisionForm& form);
-
-/// Returns `text` as a field of a .csv file, quoted if needed (RFC 4180). Invalid UTF-8 becomes U+FFFD.
-std::string csv_field(std::string_view text);
 
 }  // namespace octopair::io

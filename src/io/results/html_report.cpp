@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "io/json/json_fields.hpp"
 #include "io/json/json_text.hpp"
+#include "io/results/collision_columns.hpp"
 #include "io/results/report_page.hpp"
 
 namespace octopair::io {
@@ -45,36 +47,51 @@ std::string name_of(const ObjectNames& names, std::uint32_t object) {
 }
 
 /// Returns how bad a collision is, for the order of the rows.
-double severity_of(const Finding& finding, bool deep) {
-    constexpr double worst = std::numeric_limits<double>::infinity();
-    if (finding.collision_class == CollisionClass::duplicate) return worst;
-    if (finding.collision_class == CollisionClass::clearance) return -finding.distance;
-    return deep ? finding.depth : 0;
+double severity_of(const CollisionRecord& row) {
+    if (row.collision_class == CollisionClass::duplicate) return std::numeric_limits<double>::infinity();
+    if (row.distance) return -*row.distance;
+    return row.depth.value_or(0);
 }
 
 /// Returns a point where the objects of a pair meet or are nearest, or "null" if none is known.
-std::string json_place(const Finding& finding, bool features) {
-    const bool clear = finding.collision_class == CollisionClass::clearance;
-    if (!clear && (!features || finding.contacts.empty())) return "null";
-    const Point3d& at = clear ? finding.nearest[0] : finding.contacts.front().point;
+std::string json_place(const CollisionRecord& row) {
+    const bool met = row.contacts && !row.contacts->empty();
+    if (!met && !row.nearest) return "null";
+    const Point3d& at = met ? row.contacts->front().point : (*row.nearest)[0];
     return fmt::format("[{},{},{}]", json_number(at[0]), json_number(at[1]), json_number(at[2]));
 }
 
-/// Returns the label of one object of a row of the baseline. `side` is "a" or "b".
-nlohmann::json old_label(const nlohmann::json& row, const std::string& side) {
-    const std::string name = row.value(side + "_name", "#" + dump_json(row.at(side)));
-    const auto triangle = row.find(side + "_triangle");
-    return triangle == row.end() ? name : name + ", triangle " + dump_json(*triangle);
+std::string json_or_null(const std::optional<double>& value) { return value ? json_number(*value) : "null"; }
+
+std::string json_count(const CollisionRecord& row) {
+    return row.contacts ? std::to_string(row.contacts->size()) : "null";
 }
 
-nlohmann::json old_text(const nlohmann::json& row, const char* key) {
-    const auto value = row.find(key);
-    return value != row.end() && value->is_string() ? *value : nlohmann::json("");
+std::string json_row(const CollisionRecord& row) {
+    return fmt::format("[{},{},{},{},{},{},{},{},{},{},{},{},{}]", row.a.number, row.b.number,
+                       int(row.collision_class.value_or(CollisionClass::unknown)),
+                       row.change ? std::to_string(int(*row.change)) : "null", json_or_null(row.distance),
+                       json_or_null(row.depth), json_or_null(row.time), json_count(row), int(row.more_contacts),
+                       json_place(row), int(row.depth_kind == DepthKind::at_least), json_or_null(row.depth_at_most),
+                       int(row.a.open) + 2 * int(row.b.open));
 }
 
-nlohmann::json old_number(const nlohmann::json& row, const char* key) {
-    const auto value = row.find(key);
-    return value != row.end() && value->is_number() ? *value : nlohmann::json();
+/// Returns the label of one object of a row of the baseline.
+std::string old_label(const RecordedObject& object) {
+    const std::string name = object.name.empty() ? fmt::format("#{}", object.number) : std::string(object.name);
+    return object.triangle ? fmt::format("{}, triangle {}", name, *object.triangle) : name;
+}
+
+std::string gone_json(const CollisionRecord& row) {
+    const auto detail = [](const RecordedObject& object, Detail what) {
+        return json_string(object.details[std::size_t(what)]);
+    };
+    return fmt::format("[{},{},{},{},{},{},{},{},{},{},{},{}]", json_string(old_label(row.a)),
+                       json_string(old_label(row.b)),
+                       json_string(row.collision_class ? word_of(*row.collision_class) : std::string_view()),
+                       json_or_null(row.distance), json_or_null(row.depth), json_or_null(row.time), json_count(row),
+                       int(row.depth_kind == DepthKind::at_least), detail(row.a, Detail::label),
+                       detail(row.a, Detail::type), detail(row.b, Detail::label), detail(row.b, Detail::type));
 }
 
 }  // namespace
@@ -116,17 +133,12 @@ void HtmlReport::separate() {
 
 void HtmlReport::write(const CollisionRows& rows) {
     for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
-        const Finding finding = rows.findings.empty() ? Finding() : rows.findings[i];
-        ++of_class_[std::size_t(finding.collision_class)];
-        if (!rows.changes.empty()) ++of_change_[std::size_t(rows.changes[i])];
-        kept_.push_back({severity_of(finding, has_depth(finding)), rows_++, rows.pairs[i],
-                         json_row(rows.pairs[i], finding, rows.changes.empty() ? nullptr : &rows.changes[i])});
+        const CollisionRecord row = record_of(rows, i, scene_.form);
+        ++of_class_[std::size_t(row.collision_class.value_or(CollisionClass::unknown))];
+        if (row.change) ++of_change_[std::size_t(*row.change)];
+        kept_.push_back({severity_of(row), rows_++, rows.pairs[i], json_row(row)});
         if (kept_.size() == 2 * max_rows) keep_worst();
     }
-}
-
-bool HtmlReport::has_depth(const Finding& finding) const {
-    return scene_.form.features && meet(finding.collision_class) && finding.depth_kind != DepthKind::unknown;
 }
 
 /// Drops all rows but the worst max_rows.
@@ -137,19 +149,6 @@ void HtmlReport::keep_worst() {
     };
     std::nth_element(kept_.begin(), kept_.begin() + max_rows, kept_.end(), is_worse);
     kept_.resize(max_rows);
-}
-
-std::string HtmlReport::json_row(Pair pair, const Finding& finding, const Change* change) const {
-    const CollisionClass what = finding.collision_class;
-    const bool known = what != CollisionClass::unknown, features = scene_.form.features && meet(what);
-    const bool deep = has_depth(finding), bounded = deep && finding.depth_kind == DepthKind::at_least;
-    const auto if_known = [](bool is, auto value) { return is ? json_number(double(value)) : std::string("null"); };
-    return fmt::format("[{},{},{},{},{},{},{},{},{},{},{},{},{}]", pair.a, pair.b, int(what),
-                       change == nullptr ? "null" : std::to_string(int(*change)),
-                       if_known(known && !meet(what), finding.distance), if_known(deep, finding.depth),
-                       if_known(known && scene_.form.times, finding.time), if_known(features, finding.contacts.size()),
-                       int(features && finding.more_contacts), json_place(finding, scene_.form.features), int(bounded),
-                       if_known(bounded, finding.depth_at_most), int(finding.open[0]) + 2 * int(finding.open[1]));
 }
 
 void HtmlReport::write_rows() {
@@ -169,20 +168,7 @@ void HtmlReport::write_gone(std::span<const std::string_view> lines) {
     of_change_[std::size_t(Change::gone)] = lines.size();
     for (const std::string_view line : lines.first(std::min<std::size_t>(lines.size(), max_rows))) {
         const nlohmann::json old = parse_json(line, "older result");
-        const auto contacts = old.find("contacts"), kind = old.find("class");
-        const nlohmann::json row = {old_label(old, "a"),
-                                    old_label(old, "b"),
-                                    kind != old.end() && kind->is_string() ? *kind : nlohmann::json(""),
-                                    old_number(old, "distance"),
-                                    old_number(old, "depth"),
-                                    old_number(old, "time"),
-                                    contacts == old.end() ? nlohmann::json() : nlohmann::json(contacts->size()),
-                                    int(old.value("depth_kind", nlohmann::json()) == word_of(DepthKind::at_least)),
-                                    old_text(old, "a_label"),
-                                    old_text(old, "a_type"),
-                                    old_text(old, "b_label"),
-                                    old_text(old, "b_type")};
-        gone_.push_back(script_json(dump_json(row)));
+        gone_.push_back(script_json(gone_json(read_collision({old, "older result"}))));
     }
 }
 

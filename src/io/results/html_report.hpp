@@ -60,8 +60,6 @@ private:
         std::string json;
     };
 
-    bool has_depth(const Finding& finding) const;
-    std::string json_row(Pair pair, const Finding& finding, const Change* change) const;
     void keep_worst();
     void write_rows();
     void write_gone_rows();

@@ -7,7 +7,7 @@
 #include "octopair/collision.hpp"
 #include "octopair/objects.hpp"
 
-namespace octopair::cli {
+namespace octopair::io {
 
 /// Collisions of one frame, ascending by pair.
 struct ResultFrame {
@@ -64,4 +64,4 @@ private:
     std::size_t events_ = 0;
 };
 
-}  // namespace octopair::cli
+}  // namespace octopair::io

@@ -1,10 +1,9 @@
-#include "cli/view/result_file.hpp"
+#include "io/results/result_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -15,29 +14,29 @@
 #include "io/files/input_file.hpp"
 #include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
-#include "io/results/collision_row.hpp"
+#include "io/results/collision_columns.hpp"
 #include "octopair/error.hpp"
 
-namespace octopair::cli {
+namespace octopair::io {
 
 namespace {
 
 constexpr std::uint64_t max_result_frames = 1'000'000;
 constexpr std::uint32_t max_index = 0xFFFFFFFE;
 
-std::string read_text(const io::InputFile& file, std::uint64_t most, const std::stop_token& stop) {
+std::string read_text(const InputFile& file, std::uint64_t most, const std::stop_token& stop) {
     std::string text(std::size_t(std::min(most, file.size())), '\0');
     file.read(0, std::as_writable_bytes(std::span(text)), stop);
     return text;
 }
 
-io::NpyHeader header_of(const io::InputFile& file) {
-    const std::string head = read_text(file, io::npy_header_max_bytes, {});
-    return io::parse_npy_header(std::as_bytes(std::span(head)), file.size(), file.path());
+NpyHeader header_of(const InputFile& file) {
+    const std::string head = read_text(file, npy_header_max_bytes, {});
+    return parse_npy_header(std::as_bytes(std::span(head)), file.size(), file.path());
 }
 
-bool holds_pairs(const io::NpyHeader& header) {
-    return (header.type == io::NpyType::uint32 || header.type == io::NpyType::uint64) && header.shape.size() == 2 &&
+bool holds_pairs(const NpyHeader& header) {
+    return (header.type == NpyType::uint32 || header.type == NpyType::uint64) && header.shape.size() == 2 &&
            header.shape[1] == 2;
 }
 
@@ -68,18 +67,11 @@ bool is_result_header(std::string_view line) {
     return has("a") && has("b");
 }
 
-CollisionClass class_of(std::string_view word) {
-    for (std::size_t i = 0; i < collision_classes; ++i) {
-        if (io::word_of(CollisionClass(i)) == word) return CollisionClass(i);
-    }
-    return CollisionClass::unknown;
-}
-
 ResultRow::Event event_of(std::string_view word, const std::string& place) {
     if (word.empty()) return ResultRow::Event::none;
     if (word == "begin") return ResultRow::Event::begin;
     if (word == "end") return ResultRow::Event::end;
-    io::refuse(place, fmt::format("event '{}': neither begin nor end", io::shown_text(word)));
+    refuse(place, fmt::format("event '{}': neither begin nor end", shown_text(word)));
 }
 
 /// Checks rows, and collects them.
@@ -87,16 +79,24 @@ class ResultBuilder {
 public:
     explicit ResultBuilder(std::string file) : file_(std::move(file)) {}
 
+    /// Adds the row of a collision, whose pair and finding `row` still lacks.
+    void add(ResultRow row, const CollisionRecord& collision, const std::string& place) {
+        for (const RecordedObject* object : {&collision.a, &collision.b}) {
+            if (!object->name.empty()) result_.names.emplace(object->number, object->name);
+        }
+        row.pair = {collision.a.number, collision.b.number};
+        row.finding = finding_of(collision);
+        add(std::move(row), place);
+    }
     void add(ResultRow row, const std::string& place) {
-        if (row.pair.a == row.pair.b) io::refuse(place, "a and b are the same object");
+        if (row.pair.a == row.pair.b) refuse(place, "a and b are the same object");
         if (row.pair.a > row.pair.b) std::swap(row.pair.a, row.pair.b);
-        if (row.pair.b > max_index) io::refuse(place, "the index is too large");
+        if (row.pair.b > max_index) refuse(place, "the index is too large");
         if (row.frame >= max_result_frames)
-            io::refuse(place, fmt::format("frame {}: at most {} frames", row.frame, max_result_frames));
+            refuse(place, fmt::format("frame {}: at most {} frames", row.frame, max_result_frames));
         result_.objects = std::max<std::uint64_t>(result_.objects, std::uint64_t(row.pair.b) + 1);
         result_.frames.add(std::move(row));
     }
-    void name(std::uint32_t object, std::string name) { result_.names.emplace(object, std::move(name)); }
     void set_moving() { result_.moving = true; }
     void set_first_frame(std::uint32_t frame) {
         result_.moving = true;
@@ -104,7 +104,7 @@ public:
     }
 
     ResultFile finish() {
-        if (!result_.frames.finish()) io::refuse(file_, "some rows have events, and some have none");
+        if (!result_.frames.finish()) refuse(file_, "some rows have events, and some have none");
         return std::move(result_);
     }
 
@@ -114,14 +114,12 @@ private:
 };
 
 template <typename Index>
-void add_npy_rows(const io::InputFile& file, const io::NpyHeader& header, ResultBuilder& builder,
-                  const std::stop_token& stop) {
+void add_npy_rows(const InputFile& file, const NpyHeader& header, ResultBuilder& builder, const std::stop_token& stop) {
     Buffer<Index> numbers{std::size_t(header.shape[0] * 2)};
     file.read(header.data_offset, std::as_writable_bytes(numbers.span()), stop);
     for (std::size_t i = 0; i < numbers.size(); i += 2) {
         const std::string place = fmt::format("{}: row {}", file.path(), i / 2);
-        if (std::max<std::uint64_t>(numbers[i], numbers[i + 1]) > max_index)
-            io::refuse(place, "the index is too large");
+        if (std::max<std::uint64_t>(numbers[i], numbers[i + 1]) > max_index) refuse(place, "the index is too large");
         builder.add({.pair = {std::uint32_t(numbers[i]), std::uint32_t(numbers[i + 1])}}, place);
     }
 }
@@ -177,52 +175,19 @@ void for_each_line(const ResultText& result, bool table, const std::stop_token& 
     }
 }
 
-Contact contact_of(const nlohmann::json& value, const std::string& place) {
-    const io::JsonFields fields(value, place);
-    Contact contact;
-    contact.point = fields.point("point");
-    if (fields.find("normal") != nullptr) contact.normal = fields.point("normal");
-    if (fields.find("depth") != nullptr) contact.depth = fields.number("depth");
-    return contact;
-}
-
-Finding finding_of(const io::JsonFields& row) {
-    Finding finding;
-    if (row.find("class") != nullptr) finding.collision_class = class_of(row.text("class"));
-    if (row.find("depth") != nullptr) finding.depth = row.number("depth");
-    if (row.find("distance") != nullptr) finding.distance = row.number("distance");
-    if (const auto* const contacts = row.find("contacts")) {
-        for (const auto& contact : io::json_array(*contacts, row.place_of("contacts"))) {
-            finding.contacts.push_back(contact_of(contact, row.place_of("contacts")));
-        }
-    }
-    if (const auto* const nearest = row.find("nearest")) {
-        const auto& points = io::json_array(*nearest, row.place_of("nearest"));
-        if (points.size() == 2) {
-            for (std::size_t i = 0; i < 2; ++i) finding.nearest[i] = io::json_point(points[i], row.place_of("nearest"));
-        }
-    }
-    return finding;
-}
-
 void add_json_rows(const ResultText& text, ResultBuilder& builder, const std::stop_token& stop) {
     for_each_line(text, false, stop, [&](std::string_view line, const std::string& place) {
-        const nlohmann::json value = io::parse_json(line, place, stop);
-        const io::JsonFields fields(value, place);
-        if (fields.find("change") != nullptr && fields.text("change") == "gone") return;
+        const nlohmann::json value = parse_json(line, place, stop);
+        const JsonFields fields(value, place);
+        const CollisionRecord collision = read_collision(fields);
+        if (collision.change == Change::gone) return;
         ResultRow row;
-        row.pair = {fields.whole_number("a"), fields.whole_number("b")};
         if (fields.find("frame") != nullptr) {
             row.frame = fields.whole_number("frame");
             builder.set_moving();
         }
         if (fields.find("event") != nullptr) row.event = event_of(fields.text("event"), place);
-        row.finding = finding_of(fields);
-        for (const auto& [side, object] : {std::pair("a", row.pair.a), std::pair("b", row.pair.b)}) {
-            const std::string key = std::string(side) + "_name";
-            if (fields.find(key) != nullptr) builder.name(object, fields.text(key));
-        }
-        builder.add(std::move(row), place);
+        builder.add(std::move(row), collision, place);
     });
 }
 
@@ -232,7 +197,7 @@ public:
     CsvRow(const std::vector<std::string>& header, std::string_view line, std::string place)
         : header_(header), fields_(csv_fields(line)), place_(std::move(place)) {
         if (fields_.size() != header.size()) {
-            io::refuse(place_, fmt::format("{} fields; the header has {}", fields_.size(), header.size()));
+            refuse(place_, fmt::format("{} fields; the header has {}", fields_.size(), header.size()));
         }
     }
 
@@ -240,55 +205,21 @@ public:
         const auto at = std::find(header_.begin(), header_.end(), name);
         return at == header_.end() ? std::string_view() : std::string_view(fields_[std::size_t(at - header_.begin())]);
     }
-    std::uint32_t index(std::string_view name) const {
+    std::uint32_t whole_number(std::string_view name) const {
         const std::string_view field = text(name);
         std::uint32_t value = 0;
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
         if (error != std::errc() || end != field.data() + field.size()) {
-            io::refuse(place_, fmt::format("{}: '{}' is not a whole number", name, io::shown_text(field)));
+            refuse(place_, fmt::format("{}: '{}' is not a whole number", name, shown_text(field)));
         }
         return value;
     }
-    /// Returns a number; 0 if the field is empty or absent.
-    double number(std::string_view name) const {
-        const std::string_view field = text(name);
-        double value = 0;
-        if (field.empty()) return value;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-        if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-            io::refuse(place_, fmt::format("{}: '{}' is not a finite number", name, io::shown_text(field)));
-        }
-        return value;
-    }
-    /// Returns the points of the field `points`: "x y z;x y z".
-    std::vector<Contact> contacts() const;
 
 private:
     const std::vector<std::string>& header_;
     std::vector<std::string> fields_;
     std::string place_;
 };
-
-std::vector<Contact> CsvRow::contacts() const {
-    std::vector<Contact> contacts;
-    for (std::string_view rest = text("points"); !rest.empty();) {
-        const std::size_t end = std::min(rest.find(';'), rest.size());
-        std::string_view numbers = rest.substr(0, end);
-        Contact contact;
-        for (double& value : contact.point) {
-            numbers.remove_prefix(std::min(numbers.find_first_not_of(' '), numbers.size()));
-            const auto [after, error] = std::from_chars(numbers.data(), numbers.data() + numbers.size(), value);
-            if (error != std::errc() || !std::isfinite(value)) {
-                io::refuse(place_, fmt::format("points: '{}' is not three finite numbers",
-                                               io::shown_text(rest.substr(0, end))));
-            }
-            numbers.remove_prefix(std::size_t(after - numbers.data()));
-        }
-        contacts.push_back(contact);
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    return contacts;
-}
 
 void add_csv_rows(const ResultText& text, ResultBuilder& builder, const std::stop_token& stop) {
     std::vector<std::string> header;
@@ -298,47 +229,42 @@ void add_csv_rows(const ResultText& text, ResultBuilder& builder, const std::sto
             return;
         }
         const CsvRow fields(header, line, place);
-        if (fields.text("change") == "gone") return;
+        const CollisionRecord collision =
+            read_csv_collision([&](std::string_view name) { return fields.text(name); }, place);
+        if (collision.change == Change::gone) return;
         ResultRow row;
-        row.pair = {fields.index("a"), fields.index("b")};
         if (std::find(header.begin(), header.end(), "frame") != header.end()) {
-            row.frame = fields.index("frame");
+            row.frame = fields.whole_number("frame");
             builder.set_moving();
         }
         row.event = event_of(fields.text("event"), place);
-        row.finding.collision_class = class_of(fields.text("class"));
-        row.finding.depth = fields.number("depth");
-        row.finding.distance = fields.number("distance");
-        row.finding.contacts = fields.contacts();
-        if (!fields.text("a_name").empty()) builder.name(row.pair.a, std::string(fields.text("a_name")));
-        if (!fields.text("b_name").empty()) builder.name(row.pair.b, std::string(fields.text("b_name")));
-        builder.add(std::move(row), place);
+        builder.add(std::move(row), collision, place);
     });
 }
 
 }  // namespace
 
 bool is_result(const std::string& path) {
-    const std::string ending = io::ending_of(path);
+    const std::string ending = ending_of(path);
     if (ending == ".jsonl") return true;
     if (ending == ".csv") {
-        const std::string head = read_text(io::InputFile(path), 4096, {});
+        const std::string head = read_text(InputFile(path), 4096, {});
         return is_result_header(without_mark(std::string_view(head).substr(0, head.find_first_of("\r\n"))));
     }
     if (ending != ".npy") return false;
-    return holds_pairs(header_of(io::InputFile(path)));
+    return holds_pairs(header_of(InputFile(path)));
 }
 
 ResultFile read_result(const std::string& path, const std::stop_token& stop) {
-    const io::InputFile file(path);
+    const InputFile file(path);
     ResultBuilder builder(path);
-    const std::string ending = io::ending_of(path);
+    const std::string ending = ending_of(path);
     if (ending == ".npy") {
-        const io::NpyHeader header = header_of(file);
-        if (!holds_pairs(header)) io::refuse(path, "not an array of pairs");
+        const NpyHeader header = header_of(file);
+        if (!holds_pairs(header)) refuse(path, "not an array of pairs");
         if (const auto frame = frame_in(path)) builder.set_first_frame(*frame);
-        header.type == io::NpyType::uint32 ? add_npy_rows<std::uint32_t>(file, header, builder, stop)
-                                           : add_npy_rows<std::uint64_t>(file, header, builder, stop);
+        header.type == NpyType::uint32 ? add_npy_rows<std::uint32_t>(file, header, builder, stop)
+                                       : add_npy_rows<std::uint64_t>(file, header, builder, stop);
         return builder.finish();
     }
     const std::string text = read_text(file, file.size(), stop);
@@ -346,4 +272,4 @@ ResultFile read_result(const std::string& path, const std::stop_token& stop) {
     return builder.finish();
 }
 
-}  // namespace octopair::cli
+}  // namespace octopair::io

@@ -6,9 +6,9 @@
 #include <stop_token>
 #include <string>
 
-#include "cli/view/result_frames.hpp"
+#include "io/results/result_frames.hpp"
 
-namespace octopair::cli {
+namespace octopair::io {
 
 struct ResultFile {
     ResultFrames frames;
@@ -24,4 +24,4 @@ bool is_result(const std::string& path);
 /// Throws: Error{bad_input} that names the file and the row; Error{io_failed, cancelled}.
 ResultFile read_result(const std::string& path, const std::stop_token& stop);
 
-}  // namespace octopair::cli
+}  // namespace octopair::io

@@ -1,10 +1,10 @@
-#include "cli/view/result_frames.hpp"
+#include "io/results/result_frames.hpp"
 
 #include <algorithm>
 #include <tuple>
 #include <utility>
 
-namespace octopair::cli {
+namespace octopair::io {
 
 void ResultFrames::add(ResultRow row) {
     std::uint32_t finding = no_finding;
@@ -72,4 +72,4 @@ bool ResultFrames::has_contacts() const {
                        [](const Finding& finding) { return !finding.contacts.empty(); });
 }
 
-}  // namespace octopair::cli
+}  // namespace octopair::io

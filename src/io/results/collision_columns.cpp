@@ -1,0 +1,61 @@
+#include "io/results/collision_columns.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+RecordedObject recorded(std::uint32_t object, const ObjectNames& names) {
+    RecordedObject recorded{object, names.of(object)};
+    for (const Detail detail : all_details) recorded.details[std::size_t(detail)] = names.detail(object, detail);
+    if (!names.owners.empty()) recorded.triangle = names.triangle(object);
+    return recorded;
+}
+
+/// Adds what a finding knows: for objects that are apart the distance, for others depth and contacts.
+void add_finding(CollisionRecord& row, const Finding& finding, const CollisionForm& form) {
+    const CollisionClass what = finding.collision_class;
+    if (what == CollisionClass::unknown) return;
+    row.collision_class = what;
+    row.a.open = finding.open[0];
+    row.b.open = finding.open[1];
+    if (form.times) row.time = finding.time;
+    if (!meet(what)) {
+        row.distance = finding.distance;
+        row.nearest = finding.nearest;
+        return;
+    }
+    if (!form.features) return;
+    row.contacts = finding.contacts;
+    row.more_contacts = finding.more_contacts;
+    if (finding.depth_kind == DepthKind::unknown) return;
+    row.depth = finding.depth;
+    row.depth_kind = finding.depth_kind;
+    if (finding.depth_kind == DepthKind::at_least) row.depth_at_most = finding.depth_at_most;
+}
+
+}  // namespace
+
+CollisionRecord record_of(const CollisionRows& rows, std::size_t i, const CollisionForm& form) {
+    const Pair pair = rows.pairs[i];
+    CollisionRecord row{recorded(pair.a, form.names.a), recorded(pair.b, form.names.b)};
+    if (!rows.changes.empty()) row.change = rows.changes[i];
+    if (!rows.findings.empty()) add_finding(row, rows.findings[i], form);
+    return row;
+}
+
+Finding finding_of(const CollisionRecord& row) {
+    Finding finding;
+    finding.collision_class = row.collision_class.value_or(CollisionClass::unknown);
+    finding.distance = row.distance.value_or(0);
+    finding.nearest = row.nearest.value_or(NearestPoints());
+    finding.depth = row.depth.value_or(0);
+    finding.depth_kind = row.depth_kind.value_or(DepthKind::unknown);
+    finding.depth_at_most = row.depth_at_most.value_or(0);
+    finding.open = {row.a.open, row.b.open};
+    finding.time = row.time.value_or(0);
+    if (row.contacts) finding.contacts = *row.contacts;
+    finding.more_contacts = row.more_contacts;
+    return finding;
+}
+
+}  // namespace octopair::io

@@ -1,0 +1,145 @@
+// CollisionRecord: one row of a collision result, and the columns that a row has in .jsonl and .csv. Every writer and every reader of
+// rows goes through them.
+// Start here to add a new column of results.
+//
+// A column is a name and a member of CollisionRecord. The type of the member says how its value is written and read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/json/json_fields.hpp"
+#include "io/object_details.hpp"
+#include "io/results/collision_row.hpp"
+#include "octopair/pipeline.hpp"
+
+namespace octopair::io {
+
+/// One object of a collision. The texts are borrowed.
+struct RecordedObject {
+    std::uint32_t number = 0;
+    std::string_view name = {};                                     ///< empty if it has none
+    std::array<std::string_view, all_details.size()> details = {};  ///< empty where unknown
+    std::optional<std::uint32_t> triangle = {};                     ///< number within its owner
+    bool open = false;
+};
+
+using NearestPoints = std::array<Point3d, 2>;
+
+/// What a row says of a collision. A value that the result does not know is empty.
+struct CollisionRecord {
+    RecordedObject a, b;
+    std::optional<Change> change = {};
+    std::optional<CollisionClass> collision_class = {};
+    std::optional<double> time = {}, distance = {};
+    std::optional<NearestPoints> nearest = {};
+    std::optional<double> depth = {};
+    std::optional<DepthKind> depth_kind = {};
+    std::optional<double> depth_at_most = {};
+    std::optional<std::vector<Contact>> contacts = {};
+    bool more_contacts = false;
+};
+
+/// Returns row `i`. It borrows the texts of `form`.
+CollisionRecord record_of(const CollisionRows& rows, std::size_t i, const CollisionForm& form);
+/// Returns the collision of a row that was read. What the row does not know is 0.
+Finding finding_of(const CollisionRecord& row);
+
+/// Names of the columns of one object.
+struct ObjectColumns {
+    std::string_view number, name;
+    std::array<std::string_view, all_details.size()> details;
+    std::string_view triangle, open;
+};
+inline constexpr ObjectColumns columns_of_a = {
+    "a", "a_name", {"a_label", "a_type", "a_id", "a_parent", "a_level", "a_material"}, "a_triangle", "a_open"};
+inline constexpr ObjectColumns columns_of_b = {
+    "b", "b_name", {"b_label", "b_type", "b_id", "b_parent", "b_level", "b_material"}, "b_triangle", "b_open"};
+
+/// Calls visit(name, value) for each column of .jsonl, in their order. `Row` is CollisionRecord, or const.
+template <typename Row, typename Visit>
+void for_each_json_column(Row& row, const Visit& visit) {
+    const auto visit_object = [&](const ObjectColumns& columns, auto& object) {
+        visit(columns.name, object.name);
+        for (std::size_t i = 0; i < all_details.size(); ++i) visit(columns.details[i], object.details[i]);
+        visit(columns.triangle, object.triangle);
+    };
+    visit(columns_of_a.number, row.a.number);
+    visit(columns_of_b.number, row.b.number);
+    visit_object(columns_of_a, row.a);
+    visit_object(columns_of_b, row.b);
+    visit("change", row.change);
+    visit("class", row.collision_class);
+    visit("time", row.time);
+    visit("distance", row.distance);
+    visit("nearest", row.nearest);
+    visit("depth", row.depth);
+    visit("depth_kind", row.depth_kind);
+    visit("depth_at_most", row.depth_at_most);
+    visit("contacts", row.contacts);
+    visit("more_contacts", row.more_contacts);
+    visit(columns_of_a.open, row.a.open);
+    visit(columns_of_b.open, row.b.open);
+}
+
+// Values that only .csv has, because a field of a table has no lists. Each is part of a row. Borrowed.
+template <typename Row>
+struct CsvContactCount {
+    Row& row;
+};
+/// The points of the contacts; for objects that are apart, the nearest points.
+template <typename Row>
+struct CsvPoints {
+    Row& row;
+};
+/// "a", "b", "ab" or nothing: which objects are open.
+template <typename Row>
+struct CsvOpen {
+    Row& row;
+};
+
+/// Calls visit(name, value) for each column that .csv may have, in their order. `Row` is CollisionRecord, or const.
+template <typename Row, typename Visit>
+void for_each_csv_column(Row& row, const Visit& visit) {
+    visit(columns_of_a.number, row.a.number);
+    visit(columns_of_b.number, row.b.number);
+    visit(columns_of_a.name, row.a.name);
+    visit(columns_of_b.name, row.b.name);
+    visit("class", row.collision_class);
+    visit("distance", row.distance);
+    visit("depth", row.depth);
+    visit("time", row.time);
+    visit("contacts", CsvContactCount<Row>{row});
+    visit("points", CsvPoints<Row>{row});
+    visit("more_contacts", row.more_contacts);
+    visit("depth_kind", row.depth_kind);
+    visit("open", CsvOpen<Row>{row});
+    for (std::size_t i = 0; i < all_details.size(); ++i) {
+        visit(columns_of_a.details[i], row.a.details[i]);
+        visit(columns_of_b.details[i], row.b.details[i]);
+    }
+    visit("change", row.change);
+}
+
+/// Returns the row as a JSON object.
+std::string json_line(const CollisionRecord& row);
+/// Returns the fields of a row, quoted if needed. `shown` says of each column of for_each_csv_column() whether the file has it.
+std::string csv_line(const CollisionRecord& row, const std::vector<bool>& shown);
+/// Returns `text` as a field of a .csv file, quoted if needed (RFC 4180). Invalid UTF-8 becomes U+FFFD.
+std::string csv_field(std::string_view text);
+
+/// Reads a row. Keys that are no columns are left to the caller. The record borrows the texts of the JSON object.
+/// Throws: Error{bad_input} if `a` or `b` is missing, or if a column has a value that its type cannot have.
+CollisionRecord read_collision(const JsonFields& row);
+
+/// Returns the field of a column, without quotes; empty if the row has none.
+using CsvFieldOf = std::function<std::string_view(std::string_view name)>;
+/// Reads a row of a table. The record borrows the fields. `place` is the beginning of messages. Throws: as read_collision().
+CollisionRecord read_csv_collision(const CsvFieldOf& field, const std::string& place);
+
+}  // namespace octopair::io
