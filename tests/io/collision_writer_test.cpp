@@ -7,6 +7,7 @@
 
 #include "io/files/atomic_file.hpp"
 #include "io/results/baseline.hpp"
+#include "io/results/result_file.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {
@@ -101,7 +102,7 @@ TEST(CollisionWriter, DetailsThatAnObjectHasAreColumns) {
               R"({"a":0,"b":1,"a_name":"x","a_type":"wall, thick","a_id":"1","b_name":"y","b_material":"stone"})"
               "\n");
     EXPECT_EQ(
-        written(".csv", {{names, names}, false, false, true}, {pair, {}}, {R"({"a":0,"b":1,"a_type":"t","b_id":7})"}),
+        written(".csv", {{names, names}, false, false, true}, {pair, {}}, {R"({"a":0,"b":1,"a_type":"t","b_id":"7"})"}),
         "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,a_type,b_type,"
         "a_id,b_id,a_material,b_material,change\n"
         "0,1,x,y,,,,,,,,,,\"wall, thick\",,1,,,stone,\n"
@@ -117,7 +118,7 @@ TEST(CollisionWriter, OldRowsThatAreGone) {
     const std::vector<io::Change> changes = {io::Change::begun};
     const std::vector<Pair> pair = {{0, 1}};
     const std::string_view old =
-        R"({"a":4,"b":5,"a_name":"x,y","class":"penetrating","depth":0.1,"contacts":[{"point":[1,2.5,3]},{}],"more_contacts":true})";
+        R"({"a":4,"b":5,"a_name":"x,y","class":"penetrating","depth":0.1,"contacts":[{"point":[1,2.5,3]},{"point":[4,5,6]}],"more_contacts":true,"b_open":true})";
     const CollisionForm form{.changes = true};
     EXPECT_EQ(written(".jsonl", form, {pair, {}, changes}, {old}), R"({"a":0,"b":1,"change":"new"})"
                                                                    "\n" +
@@ -126,7 +127,7 @@ TEST(CollisionWriter, OldRowsThatAreGone) {
     EXPECT_EQ(written(".csv", form, {pair, {}, changes}, {old}),
               "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,change\n0,1,,,"
               ",,,,,,,,,new\n"
-              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3,true,,,gone\n");
+              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3;4 5 6,true,,b,gone\n");
 }
 
 class BaselineTest : public ::testing::Test {
@@ -142,6 +143,67 @@ protected:
         return io::Baseline::of_text(text, "old.jsonl", join);
     }
 };
+
+/// What a writer writes, a reader reads again. Only .jsonl has the depths, normals and features of contacts, and depth_at_most.
+TEST(CollisionColumns, ComeBack) {
+    const std::vector<std::string> names = {"a \"quoted\", name", "", "c"};
+    const CollisionForm form{{{names}, {names}}, true, true};
+    const std::vector<Finding> all = findings();
+    const TemporaryDirectory directory;
+    for (const std::string& path : {directory.file("rows.jsonl"), directory.file("rows.csv")}) {
+        SCOPED_TRACE(path);
+        const auto writer = io::make_collision_file_writer(path, form);
+        writer->write({pairs, all});
+        writer->finish();
+        const io::ResultFile file = io::read_result(path, {});
+        const io::ResultFrame frame = file.frames.frame(0);
+        EXPECT_EQ(frame.pairs, pairs);
+        EXPECT_EQ(file.names, (std::map<std::uint32_t, std::string>{{0, names[0]}, {2, names[2]}}));
+        ASSERT_EQ(frame.findings.size(), all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Finding &read = frame.findings[i], &wanted = all[i];
+            EXPECT_EQ(read.collision_class, wanted.collision_class);
+            EXPECT_EQ(read.distance, wanted.distance);
+            EXPECT_EQ(read.nearest, wanted.nearest);
+            EXPECT_EQ(read.depth, wanted.depth);
+            EXPECT_EQ(read.depth_kind, wanted.depth_kind);
+            EXPECT_EQ(read.time, wanted.time);
+            EXPECT_EQ(read.open, wanted.open);
+            EXPECT_EQ(read.more_contacts, wanted.more_contacts);
+            ASSERT_EQ(read.contacts.size(), wanted.contacts.size());
+            for (std::size_t c = 0; c < read.contacts.size(); ++c) {
+                EXPECT_EQ(read.contacts[c].point, wanted.contacts[c].point);
+                if (path.ends_with(".csv")) continue;
+                EXPECT_EQ(read.contacts[c].normal, wanted.contacts[c].normal);
+                EXPECT_EQ(read.contacts[c].depth, wanted.contacts[c].depth);
+                EXPECT_EQ(read.contacts[c].feature_a, wanted.contacts[c].feature_a);
+                EXPECT_EQ(read.contacts[c].feature_b, wanted.contacts[c].feature_b);
+            }
+            if (!path.ends_with(".csv")) {
+                EXPECT_EQ(read.depth_at_most, wanted.depth_at_most);
+            }
+        }
+    }
+}
+
+/// A value that no result has would be lost without a word in the table and in the report.
+TEST_F(BaselineTest, ValuesOfAnotherTypeAreRefused) {
+    const auto message = [](const std::string& value) {
+        return error_of(ErrorCode::bad_input, [&] { (void)read("\n{\"a\":0,\"b\":1," + value + "}\n"); });
+    };
+    EXPECT_EQ(message(R"("b_id":7)"), "old.jsonl: line 2: b_id: a number, not a string");
+    EXPECT_EQ(message(R"("class":"deep")"),
+              "old.jsonl: line 2: class: 'deep' is none of unknown, clearance, collision, "
+              "touching, penetrating, contained, duplicate");
+    EXPECT_EQ(message(R"("change":"begun")"), "old.jsonl: line 2: change: 'begun' is none of new, same, gone");
+    EXPECT_EQ(message(R"("depth_kind":1)"), "old.jsonl: line 2: depth_kind: a number, not a string");
+    EXPECT_EQ(message(R"("depth":"0.1")"), "old.jsonl: line 2: depth: a string, not a number");
+    EXPECT_EQ(message(R"("contacts":[{}])"), "old.jsonl: line 2: contacts: the key 'point' is missing");
+    EXPECT_EQ(message(R"("nearest":[[0,0,0]])"), "old.jsonl: line 2: nearest: not two points");
+    EXPECT_EQ(message(R"("more_contacts":1)"), "old.jsonl: line 2: more_contacts: a number, not true or false");
+    io::Baseline baseline = read(R"({"a":0,"b":1,"depth":null,"unknown":{}})");
+    EXPECT_EQ(words(baseline, {{0, 1}}, {}), "same 0 gone");
+}
 
 TEST_F(BaselineTest, NamesAreKnownInAnyOrderAndNumber) {
     const std::vector<std::string> objects = {"bolt", "nut", "plate"};

@@ -102,7 +102,7 @@ TEST_F(HtmlReport, ChangesAndTheOtherSet) {
         "t", {{{reported_names}, {}}, false, false, true}, std::span(reported_boxes), std::span(others), true};
     const std::string text = page(
         scene, {pair, {}, changes},
-        {R"({"a":4,"b":5,"a_name":"<x>","class":7,"depth":0.5,"depth_kind":"at_least","b_label":"L","contacts":[{}]})"});
+        {R"({"a":4,"b":5,"a_name":"<x>","depth":0.5,"depth_kind":"at_least","b_label":"L","contacts":[{"point":[1,2,3]}]})"});
     EXPECT_EQ(data_of(text, "rows"), json::parse("[[0,3,0,1,null,null,null,null,0,null,0,null,0]]"));
     EXPECT_EQ(data_of(text, "gone"), json::parse(R"([["<x>","#5","",null,0.5,null,1,1,"","","L",""]])"));
     const json objects = data_of(text, "objects");
