@@ -11,6 +11,7 @@
 #include "cli/detect/detect_options.hpp"
 #include "cli/detect/detection.hpp"
 #include "cli/detect/event_detection.hpp"
+#include "cli/detect/frame_search.hpp"
 #include "cli/output/report.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/atomic_file.hpp"
@@ -56,12 +57,13 @@ int exit_status_of(const DetectRequest& request, const DetectReport& report) {
 }
 
 /// Detects on the processes of a group; its first rank says what came of it.
-DetectReport detect_and_report(const DetectRequest& request, Group& group, const std::stop_token& stop) {
+DetectReport detect_and_report(const DetectRequest& request, SearchGroup& searchers, const std::stop_token& stop) {
+    Group& group = searchers.processes();
     std::optional<Outcome> outcome;
     group.together([&] {
         if (group.first()) outcome.emplace(request, stop);
     });
-    DetectReport report = request.events ? detect_events(request, {}, stop) : detect(request, group, stop);
+    DetectReport report = request.events ? detect_events(request, {}, stop) : detect(request, searchers, stop);
     group.together([&] {
         if (outcome) outcome->write(report);
     });
@@ -102,7 +104,7 @@ int run_on_ranks(const DetectRequest& request) {
             // All ranks end with the status of rank 0.
             return cluster.all_gather(find_events_on_ranks(request, cluster, interrupt.token())).front();
         }
-        return exit_status_of(request, detect_and_report(request, cluster, interrupt.token()));
+        return exit_status_of(request, detect_and_report(request, *ranks_of(cluster), interrupt.token()));
     } catch (const Error& error) {
         if (!cluster.ends_alike()) throw;
         return cluster.fail_together(error);
@@ -115,8 +117,7 @@ int run_detect(const DetectRequest& request) {
     if (request.engine.has_ranks()) return run_on_ranks(request);
 #endif
     const Interrupt interrupt;
-    Group alone;
-    return exit_status_of(request, detect_and_report(request, alone, interrupt.token()));
+    return exit_status_of(request, detect_and_report(request, *one_process(), interrupt.token()));
 }
 
 }  // namespace

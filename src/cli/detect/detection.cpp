@@ -14,10 +14,6 @@
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
 #endif
-#ifdef OCTOPAIR_WITH_MPI
-#include "cli/detect/rank_facts.hpp"
-#include "cli/ranks/cluster.hpp"
-#endif
 
 namespace octopair::cli {
 
@@ -36,22 +32,22 @@ namespace {
 
 class Detection {
 public:
-    Detection(const DetectRequest& request, Group& group, std::stop_token stop)
-        : group_(group), run_{request, std::move(stop), ProgressLine(!request.quiet && group.first())} {}
+    Detection(const DetectRequest& request, SearchGroup& searchers, std::stop_token stop)
+        : searchers_(searchers), run_{request, std::move(stop), ProgressLine(!request.quiet && group_.first())} {}
 
     DetectReport run() {
         {
             const Timed timed(report_.seconds.total);
             group_.together([&] { read(); });
-            compare_inputs();
-            make_search();
+            searchers_.compare_inputs(run_);
+            search_ = searchers_.make_search(run_);
             if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
             try {
                 search_frames();
             } catch (const Error& error) {
                 if (error.code() == ErrorCode::bad_input) refuse_faults();
                 // If boxes changed, an engine or a check may report a contradiction. The change is then the reason.
-                if (error.code() == ErrorCode::engine_failed && !request_.engine.has_ranks()) run_.check_inputs();
+                if (error.code() == ErrorCode::engine_failed && group_.ranks() == 1) run_.check_inputs();
                 throw;
             }
         }
@@ -63,7 +59,7 @@ private:
     void read() {
         const Timed timed(report_.seconds.read);
         run_.progress.show("reading", 0);
-        read_inputs();
+        searchers_.read_inputs(run_);
         report_.frames = inputs_.frames.frames;
         report_.moving = inputs_.frames.moving;
         report_.objects = inputs_.first.total + inputs_.second.total;
@@ -78,12 +74,7 @@ private:
 #ifdef OCTOPAIR_WITH_PIPELINE
         describe_shapes();
 #endif
-#ifdef OCTOPAIR_WITH_MPI
-        if (request_.engine.has_ranks()) {
-            check_index_width(run_);
-            report_.engine.ranks = group_.ranks();
-        }
-#endif
+        searchers_.check_objects(run_);
     }
 
     SetPair sets() const { return {inputs_.first, run_.join() ? &inputs_.second : nullptr}; }
@@ -107,31 +98,6 @@ private:
     }
 #endif
 
-#ifdef OCTOPAIR_WITH_MPI
-    void read_inputs() {
-        if (!request_.engine.has_ranks() || needs_whole_inputs(request_))
-            return inputs_.read(request_, run_.progress, run_.stop);
-        read_slices(run_, cluster());
-    }
-    void make_search() {
-        search_ = request_.engine.has_ranks() ? make_rank_search(run_, cluster()) : make_stream_search(run_);
-    }
-    Cluster& cluster() { return dynamic_cast<Cluster&>(group_); }
-
-    /// Ranks that read other objects would find the pairs of no scene.
-    void compare_inputs() {
-        if (!request_.engine.has_ranks()) return;
-        const Timed timed(report_.seconds.read);
-        Facts facts;
-        group_.together([&] { facts = input_facts(run_); });
-        cluster().require_same(facts);
-    }
-#else
-    void compare_inputs() {}
-    void read_inputs() { inputs_.read(request_, run_.progress, run_.stop); }
-    void make_search() { search_ = make_stream_search(run_); }
-#endif
-
     void search_frames() {
         search_->prepare();
         for (std::uint64_t frame = 0; frame < report_.frames; ++frame) search_->search(frame);
@@ -150,7 +116,8 @@ private:
         });
     }
 
-    Group& group_;
+    SearchGroup& searchers_;
+    Group& group_ = searchers_.processes();
     DetectRun run_;
     const DetectRequest& request_ = run_.request;
     WholeInputs& inputs_ = run_.inputs;
@@ -219,8 +186,8 @@ Options DetectRun::call_options(std::uint64_t frame) {
     return options;
 }
 
-DetectReport detect(const DetectRequest& request, Group& group, const std::stop_token& stop) {
-    return Detection(request, group, stop).run();
+DetectReport detect(const DetectRequest& request, SearchGroup& searchers, const std::stop_token& stop) {
+    return Detection(request, searchers, stop).run();
 }
 
 }  // namespace octopair::cli

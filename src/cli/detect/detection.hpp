@@ -10,13 +10,14 @@
 #include "cli/command/command.hpp"
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/engine_choice.hpp"
-#include "cli/ranks/group.hpp"
 #include "io/results/baseline.hpp"
 #include "io/scene_reader.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/pipeline.hpp"
 
 namespace octopair::cli {
+
+class SearchGroup;
 
 struct DetectRequest {
     std::vector<std::string> inputs;
@@ -88,9 +89,9 @@ private:
     void add(const Verification& verification);
 };
 
-/// Finds the pairs of a request, on one process or on the ranks of a group, and writes them.
+/// Finds the pairs of a request, on the processes of a group, and writes them.
 /// Collective. Throws: Error, the same on all ranks.
 /// Returns the report of this rank: the numbers of all ranks, with the seconds of this one.
-DetectReport detect(const DetectRequest& request, Group& group, const std::stop_token& stop);
+DetectReport detect(const DetectRequest& request, SearchGroup& searchers, const std::stop_token& stop);
 
 }  // namespace octopair::cli

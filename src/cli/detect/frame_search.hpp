@@ -1,5 +1,6 @@
-// FrameSearch: finds and writes the pairs of one frame after another. There are two: one streams the pairs of a single
-// process (stream_search.cpp), the other joins the pieces of all ranks (rank_search.cpp).
+// SearchGroup: the processes that search together, and FrameSearch: how they find and write the pairs of one frame after another.
+// There are two of each: one process with any engine streams its pairs (stream_search.cpp); ranks of MPI read slices and join their
+// pieces (rank_search.cpp).
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,11 @@
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
 #include "cli/input/whole_inputs.hpp"
+#include "cli/ranks/group.hpp"
 
 namespace octopair::cli {
+
+class Cluster;
 
 /// One run of `octopair detect`: what was asked, what was read, what has come out so far.
 struct DetectRun {
@@ -42,21 +46,25 @@ public:
     virtual void finish() = 0;
 };
 
-/// Borrows the run, whose inputs are whole. Throws what the makers of engines throw.
-std::unique_ptr<FrameSearch> make_stream_search(DetectRun& run);
+class SearchGroup {
+public:
+    virtual ~SearchGroup() = default;
+    virtual Group& processes() = 0;
+    /// Reads the objects that this process needs. Within together().
+    virtual void read_inputs(DetectRun& run) = 0;
+    /// Throws: Error{resource_limit} for more objects than the requested output, filters or verification can number. Within together().
+    virtual void check_objects(DetectRun& run) = 0;
+    /// Collective. Throws: Error{usage} if the processes have read other objects, which would be the pairs of no scene.
+    virtual void compare_inputs(DetectRun& run) = 0;
+    /// Collective, as all functions of its result. Borrows the run, after it has read its inputs.
+    /// Throws: what the makers of engines throw.
+    virtual std::unique_ptr<FrameSearch> make_search(DetectRun& run) = 0;
+};
 
+std::unique_ptr<SearchGroup> one_process();
 #ifdef OCTOPAIR_WITH_MPI
-class Cluster;
-
-/// True if every rank needs all objects. Filters and verification look at any object, and boxes of shapes may depend on all.
-bool needs_whole_inputs(const DetectRequest& request);
-/// Reads this rank's slice of each set.
-void read_slices(DetectRun& run, const Cluster& cluster);
-/// Throws: Error{resource_limit} for more objects than the requested output, filters or verification can number.
-void check_index_width(const DetectRun& run);
-
-/// Collective, as all functions of its result. Borrows both.
-std::unique_ptr<FrameSearch> make_rank_search(DetectRun& run, Cluster& cluster);
+/// Borrows `cluster`.
+std::unique_ptr<SearchGroup> ranks_of(Cluster& cluster);
 #endif
 
 }  // namespace octopair::cli

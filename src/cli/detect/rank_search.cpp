@@ -11,6 +11,7 @@
 #include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
 #include "cli/detect/frame_search.hpp"
+#include "cli/detect/rank_facts.hpp"
 #include "cli/input/join.hpp"
 #include "cli/output/piece_output.hpp"
 #include "cli/ranks/cluster.hpp"
@@ -36,6 +37,12 @@ IndexedInput unindexed(const Input& input) {
 /// True if indices need more bits than a Pair has, or if the request asks for 64 bits.
 bool has_wide_indices(const DetectRun& run) {
     return run.request.wide_indices || run.report.objects > std::numeric_limits<std::uint32_t>::max();
+}
+
+/// Returns whether every rank needs all objects. Filters and verification look at any object, and boxes of shapes may depend on all.
+bool needs_whole_inputs(const DetectRequest& request) {
+    return has_filters(request) || request.verify || io::is_json_file(request.against) ||
+           std::any_of(request.inputs.begin(), request.inputs.end(), io::is_json_file);
 }
 
 SliceNumber own_slice(const Cluster& cluster) { return {cluster.rank(), cluster.ranks()}; }
@@ -166,13 +173,7 @@ private:
 #endif
 };
 
-}  // namespace
-
-bool needs_whole_inputs(const DetectRequest& request) {
-    return has_filters(request) || request.verify || io::is_json_file(request.against) ||
-           std::any_of(request.inputs.begin(), request.inputs.end(), io::is_json_file);
-}
-
+/// Reads this rank's slice of each set.
 void read_slices(DetectRun& run, const Cluster& cluster) {
     const DetectRequest& request = run.request;
     const SliceRequest slice{own_slice(cluster), cluster.first()};
@@ -189,18 +190,46 @@ void read_slices(DetectRun& run, const Cluster& cluster) {
     second.padding = own(run.inputs.padding->against(), second);
 }
 
-void check_index_width(const DetectRun& run) {
-    if (!has_wide_indices(run)) return;
-    const std::string objects = std::to_string(run.report.objects) + " objects: ";
-    if (run.request.verify) throw Error(ErrorCode::resource_limit, objects + "--verify has indices of 32 bits");
-    if (has_filters(run.request)) throw Error(ErrorCode::resource_limit, objects + "filters have indices of 32 bits");
-    if (!io::is_array_file(run.request.output) && !run.request.count_only) {
-        throw Error(ErrorCode::resource_limit, objects + "indices of 64 bits go to .npy files alone");
-    }
-}
+class RankGroup final : public SearchGroup {
+public:
+    explicit RankGroup(Cluster& cluster) : cluster_(cluster) {}
 
-std::unique_ptr<FrameSearch> make_rank_search(DetectRun& run, Cluster& cluster) {
-    return std::make_unique<RankedSearch>(run, cluster);
-}
+    Group& processes() override { return cluster_; }
+
+    void read_inputs(DetectRun& run) override {
+        if (needs_whole_inputs(run.request)) return run.inputs.read(run.request, run.progress, run.stop);
+        read_slices(run, cluster_);
+    }
+
+    void check_objects(DetectRun& run) override {
+        run.report.engine.ranks = cluster_.ranks();
+        if (!has_wide_indices(run)) return;
+        const std::string objects = std::to_string(run.report.objects) + " objects: ";
+        if (run.request.verify) throw Error(ErrorCode::resource_limit, objects + "--verify has indices of 32 bits");
+        if (has_filters(run.request))
+            throw Error(ErrorCode::resource_limit, objects + "filters have indices of 32 bits");
+        if (!io::is_array_file(run.request.output) && !run.request.count_only) {
+            throw Error(ErrorCode::resource_limit, objects + "indices of 64 bits go to .npy files alone");
+        }
+    }
+
+    void compare_inputs(DetectRun& run) override {
+        const Timed timed(run.report.seconds.read);
+        Facts facts;
+        cluster_.together([&] { facts = input_facts(run); });
+        cluster_.require_same(facts);
+    }
+
+    std::unique_ptr<FrameSearch> make_search(DetectRun& run) override {
+        return std::make_unique<RankedSearch>(run, cluster_);
+    }
+
+private:
+    Cluster& cluster_;
+};
+
+}  // namespace
+
+std::unique_ptr<SearchGroup> ranks_of(Cluster& cluster) { return std::make_unique<RankGroup>(cluster); }
 
 }  // namespace octopair::cli

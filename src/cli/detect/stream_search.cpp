@@ -108,8 +108,20 @@ private:
     std::unique_ptr<FoundWriter> writer_;   // none: pairs are only counted
 };
 
+class OneProcess final : public SearchGroup {
+public:
+    Group& processes() override { return alone_; }
+    void read_inputs(DetectRun& run) override { run.inputs.read(run.request, run.progress, run.stop); }
+    void check_objects(DetectRun&) override {}
+    void compare_inputs(DetectRun&) override {}
+    std::unique_ptr<FrameSearch> make_search(DetectRun& run) override { return std::make_unique<StreamSearch>(run); }
+
+private:
+    Group alone_;
+};
+
 }  // namespace
 
-std::unique_ptr<FrameSearch> make_stream_search(DetectRun& run) { return std::make_unique<StreamSearch>(run); }
+std::unique_ptr<SearchGroup> one_process() { return std::make_unique<OneProcess>(); }
 
 }  // namespace octopair::cli
