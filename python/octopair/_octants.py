@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _arrays, _core
 from ._arrays import Array
-from ._engine import MOST_THREADS
+from ._options import MOST_THREADS
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)

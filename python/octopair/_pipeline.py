@@ -8,8 +8,9 @@ import numpy as np
 
 from . import _arrays, _core
 from ._arrays import Array
-from ._engine import MOST_THREADS, Engine, Order, call_options
+from ._engine import Engine
 from ._errors import InputError, InputTypeError, UsageError
+from ._options import MOST_THREADS, Order, call_options
 from ._progress import Progress, reporter
 from ._results import Collisions, PipelineSummary
 from ._shapes import Shapes, face_array

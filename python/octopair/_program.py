@@ -17,8 +17,8 @@ import numpy as np
 
 from . import _arrays
 from ._arrays import Array
-from ._engine import path_text
 from ._errors import EngineError, Error, FileError, InputError, ResourceLimitError, UsageError
+from ._options import path_text
 from ._results import html_table
 
 PathLike = Union[str, "os.PathLike[str]"]

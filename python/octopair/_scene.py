@@ -9,8 +9,8 @@ import numpy as np
 
 from . import _arrays, _core
 from ._arrays import Array
-from ._engine import MOST_THREADS, float_dtype, path_text
 from ._errors import InputError, InputTypeError
+from ._options import MOST_THREADS, float_dtype, path_text
 from ._octants import Octants
 from ._results import Answers, Hits, Neighbors, StepResult
 

@@ -18,8 +18,9 @@ import numpy as np
 
 from . import _arrays, _core
 from ._arrays import Array
-from ._engine import Engine, Order, PairStream, call_options
+from ._engine import Engine, PairStream
 from ._errors import InputTypeError, UsageError
+from ._options import Order, call_options
 from ._results import Summary
 
 try:

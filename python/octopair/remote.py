@@ -8,8 +8,8 @@ from typing import Any, Dict, List, Optional
 import numpy as np
 
 from . import _arrays, _core
-from ._engine import Order, call_options, float_dtype
 from ._errors import Error, UsageError, make
+from ._options import Order, call_options, float_dtype
 from ._progress import Progress, reporter
 from ._results import JobResult, Summary, html_table
 from ._scene import SceneCalls
