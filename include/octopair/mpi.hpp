@@ -70,8 +70,8 @@ using IndexedJoin = JoinOf<IndexedObjects>;
 /// The objects of find_pairs64(): IndexedObjects, or IndexedJoin{first, second}.
 using IndexedInput = InputOf<IndexedObjects>;
 
-/// Stores this rank's piece of the pairs in `pairs`: the piece that find_pairs() would return for all objects in the order of
-/// their indices. Use this function for indices of your own, or for more than 2^32 - 1 objects. Collective.
+/// Stores this rank's piece of the pairs in `pairs`. All pieces, in rank order, are the pairs that find_pairs() would return for all
+/// objects in the order of their indices. Use this function for indices of your own, or for more than 2^32 - 1 objects. Collective.
 /// Throws: as Engine::find_pairs(); Error{resource_limit} if a rank has or receives more than 2^32 - 1 objects;
 /// Error{bad_input} for an index that occurs twice; Error{usage} if `engine` is not an MPI engine or has the paper's
 /// arrangement.

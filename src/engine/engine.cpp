@@ -28,16 +28,15 @@ void check_set(const Objects& set, const char* name) {
     }
 }
 
-/// Returns a function that calls `progress`, on any thread, as a callback of `call`. Borrows both.
-ProgressSink of_call(const CallScope& call, const ProgressSink& progress) {
+}  // namespace
+
+ProgressSink detail::callback_of(const CallScope& call, const ProgressSink& progress) {
     if (!progress) return {};
     return [&](double done) {
         const CallbackScope scope(call);
         progress(done);
     };
 }
-
-}  // namespace
 
 void detail::check_request(const detail::Request& request) {
     const double margin = request.options.margin;
@@ -66,7 +65,7 @@ Summary Engine::call(const detail::Request& request, const detail::Output& outpu
     if (output.list != nullptr) detail::storage_of(*output.list).reset();
     check(request);
     try {
-        const ProgressSink progress = of_call(own, request.options.progress);
+        const ProgressSink progress = detail::callback_of(own, request.options.progress);
         const detail::Control control{stop, progress};
         if (!request.options.verify) return run(request, output, control);
         return VerifiedCall(request, output, control).run(verification_threads(), [this](const auto&... call) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "base/call_scope.hpp"
 #include "base/private_export.hpp"
 #include "octopair/engine.hpp"
 
@@ -32,6 +33,9 @@ inline Request request_of(const Input& input, const Options& options) {
 /// Checks options and sizes.
 /// Throws: Error{bad_input}, or Error{resource_limit} for too many objects.
 OCTOPAIR_PRIVATE_EXPORT void check_request(const Request& request);
+
+/// Returns a function that calls `progress`, on any thread, as a callback of `call`; empty if `progress` is empty. Borrows both.
+OCTOPAIR_PRIVATE_EXPORT ProgressSink callback_of(const CallScope& call, const ProgressSink& progress);
 
 struct Control {
     std::stop_token stop;

@@ -90,6 +90,29 @@ TEST_F(RankErrors, RefuseCallsInTheirSinks) {
     EXPECT_EQ(engine_->count_pairs(own()), engine_->count_pairs(own()));
 }
 
+/// With several threads, a progress function runs on other threads than that of the call, too.
+TEST_F(RankErrors, RefuseCallsInTheirProgressFunctions) {
+    const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = 4});
+    const std::vector<Box3f> boxes = test::slice(samples::make_scene("dense", 40'000, 1), test::Spread::even);
+    const Objects input{std::span(boxes), {}};
+    std::atomic<int> reports = 0;
+    const auto try_all = [&](double) {
+        ++reports;
+        test::expect_calls_refused(*engine);
+        std::vector<Pair64> wide;
+        PairList gathered;
+        test::expect_deadlock_refused([&] { (void)find_pairs64(*engine, IndexedObjects{input, {}}, wide); });
+        test::expect_deadlock_refused([&] { gather_pairs(*engine, gathered); });
+    };
+    PairList pairs;
+    (void)engine->find_pairs(input, pairs, {.progress = try_all});
+    EXPECT_GT(reports.exchange(0), 0);
+    std::vector<Pair64> found;
+    (void)find_pairs64(*engine, IndexedObjects{input, {}}, found, {.progress = try_all});
+    EXPECT_GT(reports, 0);
+    EXPECT_EQ(test::all_pieces(found).size(), test::all_pieces(pairs.to_vector()).size());
+}
+
 TEST_F(RankErrors, RefuseToVerify) {
     Options verifying;
     verifying.verify = last();  // on a single rank

@@ -52,13 +52,13 @@ public:
         pairs = std::move(all);
     }
 
-    // NOLINTNEXTLINE(readability-function-size): objects, output, control.
-    Summary find(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control) {
+    Summary find(const detail::Request& request, const IndexedCall& indexed, std::stop_token stop) {
         refuse_inside_call_of(this);
         const CallScope own(this);
+        const ProgressSink progress = detail::callback_of(own, request.options.progress);
         jobs_.wait_for_all();
         const std::lock_guard lock(calls_);
-        return search_.run(request, indexed, control);
+        return search_.run(request, indexed, {std::move(stop), progress});
     }
 
     const RankCosts& costs() const { return search_.costs(); }
@@ -112,7 +112,7 @@ Summary find_indexed(Engine& engine, const detail::Request& request, const Index
     MpiEngine& ranks = as_mpi_engine(dynamic_cast<MpiEngine*>(&engine));
     indexed.pairs.clear();
     try {
-        return ranks.find(request, indexed, {std::move(stop), request.options.progress});
+        return ranks.find(request, indexed, std::move(stop));
     } catch (const std::bad_alloc&) {
         indexed.pairs.clear();
         throw Error(ErrorCode::resource_limit, "out of memory");
