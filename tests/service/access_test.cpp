@@ -121,6 +121,15 @@ TEST_F(Access, PathsOfSocketsMayHaveAnyCharacters) {
     }
 }
 
+/// gRPC reads a name before the first colon as a scheme if it knows one of this name.
+TEST(ServerAddress, HostsMayHaveTheNamesOfSchemes) {
+    for (const std::string name : {"dns", "ipv4", "ipv6", "vsock", "xds", "google-c2p", "unix-abstract", "localhost"})
+        EXPECT_EQ(service::parse_address(name + ":50051").uri(), "dns:///" + name + ":50051");
+    EXPECT_EQ(service::parse_address("[fe80::1%eth0]:80").uri(), "dns:///%5Bfe80::1%25eth0%5D:80");
+    EXPECT_EQ(service::parse_address("unix:///a b").uri(), "unix:/a%20b");
+    EXPECT_EQ(service::parse_address("unix:50051").uri(), "unix:50051");
+}
+
 TEST_F(Access, AddressesThatOthersReachNeedProtection) {
     for (const std::string address : {"0.0.0.0:0", "[::]:0", "192.0.2.1:0", "[::ffff:127.0.0.1]:0"}) {
         EXPECT_EQ(refusal_of(options_at(address), ErrorCode::usage),

@@ -6,7 +6,6 @@
 #include <grpcpp/security/credentials.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <thread>
 
 #include "base/stop.hpp"
@@ -41,24 +40,6 @@ void check_clear_token(const Address& address, const ClientOptions& options) {
     throw Error(ErrorCode::usage, address.text() +
                                       ": a token is not sent without encryption, because any user of this machine may "
                                       "listen there; use TLS, a Unix socket, or --token-in-clear");
-}
-
-/// Returns the address as a URI, which gRPC expects. In the path of a Unix socket, characters such as % ? # and blanks are written as %25,
-/// because gRPC would connect to another path, or to none.
-std::string uri_of(const Address& address) {
-    if (!address.is_unix()) return address.text();
-    constexpr std::string_view plain = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-._~/";
-    constexpr std::string_view hexadecimal = "0123456789ABCDEF";
-    std::string uri = "unix:";
-    for (const char c : address.path) {
-        if (c == '/' && uri == "unix:/") continue;  // two slashes would begin the name of a machine
-        if (plain.find(c) != std::string_view::npos) {
-            uri += c;
-        } else {
-            uri += {'%', hexadecimal[std::uint8_t(c) >> 4], hexadecimal[std::uint8_t(c) & 15]};
-        }
-    }
-    return uri;
 }
 
 std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address, const ClientOptions& options) {
@@ -125,8 +106,8 @@ Connection::Connection(std::string_view address, const ClientOptions& options)
       token_(options.token),
       connect_timeout_(options.connect_timeout),
       reconnect_timeout_(options.patience),
-      channel_(grpc::CreateCustomChannel(uri_of(parse_address(address)),
-                                         credentials_of(parse_address(address), options), arguments())) {
+      channel_(grpc::CreateCustomChannel(parse_address(address).uri(), credentials_of(parse_address(address), options),
+                                         arguments())) {
     check_token(token_);
     const Address parsed = parse_address(address);
     if (parsed.is_unix() && !token_.empty()) guarded_socket_ = parsed.path;

@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 
 #include "octopair/error.hpp"
@@ -58,11 +59,36 @@ bool is_port(std::string_view text) {
            std::stoul(std::string(text)) <= 65535;
 }
 
+/// Returns a path for a URI. Characters such as % ? # and blanks are written as %25, because gRPC would connect to another path, or to
+/// none.
+std::string escaped(std::string_view path) {
+    constexpr std::string_view plain = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-._~/:";
+    constexpr std::string_view hexadecimal = "0123456789ABCDEF";
+    std::string text;
+    for (const char c : path) {
+        if (plain.find(c) != std::string_view::npos) {
+            text += c;
+        } else {
+            text += {'%', hexadecimal[std::uint8_t(c) >> 4], hexadecimal[std::uint8_t(c) & 15]};
+        }
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string Address::text() const {
     if (is_unix()) return std::string(unix_prefix) + path;
     return host.find(':') == std::string::npos ? host + ":" + port : "[" + host + "]:" + port;
+}
+
+std::string Address::uri() const {
+    // The scheme is always written: gRPC would read a host that is named like a scheme, as in dns:50051, as one.
+    if (!is_unix()) return "dns:///" + escaped(text());
+    std::string_view rest = path;
+    // Two slashes would begin the name of a machine.
+    while (rest.starts_with("//")) rest.remove_prefix(1);
+    return std::string(unix_prefix) + escaped(rest);
 }
 
 Address parse_address(std::string_view text) {

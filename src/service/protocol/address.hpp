@@ -14,8 +14,10 @@ struct Address {
     std::string port;  ///< decimal, 0 to 65535
 
     bool is_unix() const { return !path.empty(); }
-    /// Returns the address in the form that parse_address() and gRPC accept.
+    /// Returns the address in the form that parse_address() accepts.
     std::string text() const;
+    /// Returns the address as a URI, which gRPC's clients expect.
+    std::string uri() const;
 };
 
 /// Returns the address that `text` names. Throws: Error{usage} if it is not a valid address.
