@@ -51,7 +51,7 @@ public:
         data.exists = exists;
         data.pairs = pairs_[frame];
         data.pair_count = data.pairs.size();
-        data.facts.push_back({"seconds.detect", 0.5});
+        data.facts.push_back({"seconds.detect", seconds});
         ++finds;
         busy_ = false;
         return data;
@@ -64,6 +64,7 @@ public:
     }
 
     std::chrono::milliseconds pause{0};
+    double seconds = 0.5;  ///< time that each frame is said to have taken
     std::uint64_t broken_frame = ~std::uint64_t(0);
     bool lacks_memory = false;  ///< the broken frame does not fit into memory
     std::vector<std::uint8_t> exists;

@@ -24,7 +24,8 @@ struct ShownShape {
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Facts for people: a name, and a number or a text.
+/// Facts for people: a name, and a number or a text. A name with a dot ("seconds.read") is a measured time, which exported pages do not
+/// have: the same input gives the same page.
 struct Fact {
     std::string name;
     double number = 0;

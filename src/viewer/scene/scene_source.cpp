@@ -27,12 +27,12 @@ Json number_or_text(const Fact& fact) {
 constexpr std::uint64_t max_empty_frames = 100;
 
 /// Adds facts to an object. "seconds.read" becomes the member "read" of "seconds".
-void add_facts(Json& json, const std::vector<Fact>& facts) {
+void add_facts(Json& json, const std::vector<Fact>& facts, bool with_seconds) {
     for (const Fact& fact : facts) {
         const std::size_t dot = fact.name.find('.');
         if (dot == std::string::npos) {
             json[fact.name] = number_or_text(fact);
-        } else {
+        } else if (with_seconds) {
             json[fact.name.substr(0, dot)][fact.name.substr(dot + 1)] = number_or_text(fact);
         }
     }
@@ -246,8 +246,8 @@ Answer SceneSource::view_answer() const {
                 {"search", !export_},
                 {"near", !export_ && shown_.size() < contents_.objects}};
     Json summary = {{"pairs", first_pairs_}};
-    add_facts(summary, contents_.facts);
-    add_facts(summary, first_facts_);
+    add_facts(summary, contents_.facts, !export_);
+    add_facts(summary, first_facts_, !export_);
     std::vector<std::string> notices = contents_.notices;
     if (export_) notices.insert(notices.end(), export_->notices.begin(), export_->notices.end());
     return json_answer({{"version", OCTOPAIR_VERSION},
@@ -275,7 +275,7 @@ Answer SceneSource::frame_answer(const Frame& frame) const {
                  {"pairs_listed", std::min(frame.data.pairs.size(), max_listed_pairs)},
                  {"began", frame.began.size()},
                  {"ended", frame.ended.size()}};
-    add_facts(json, frame.data.facts);
+    add_facts(json, frame.data.facts, !export_);
     return json_answer(json);
 }
 
