@@ -2,8 +2,10 @@
 #include <filesystem>
 
 #include "service/guarded.hpp"
+#include "service/protocol/grpc_lifetime.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/private_file.hpp"
+#include "service/server/net/insecure_credentials.hpp"
 
 namespace octopair::test {
 namespace {
@@ -128,6 +130,30 @@ TEST(ServerAddress, HostsMayHaveTheNamesOfSchemes) {
     EXPECT_EQ(service::parse_address("[fe80::1%eth0]:80").uri(), "dns:///%5Bfe80::1%25eth0%5D:80");
     EXPECT_EQ(service::parse_address("unix:///a b").uri(), "unix:/a%20b");
     EXPECT_EQ(service::parse_address("unix:50051").uri(), "unix:50051");
+}
+
+/// The interface of grpc::ServerCredentials after gRPC 1.51.
+class LaterServerCredentials {
+public:
+    virtual ~LaterServerCredentials() { grpc_server_credentials_release(credentials_); }
+    LaterServerCredentials(const LaterServerCredentials&) = delete;
+    LaterServerCredentials& operator=(const LaterServerCredentials&) = delete;
+    virtual void SetAuthMetadataProcessor(const std::shared_ptr<grpc::AuthMetadataProcessor>&) {}
+    bool owns_credentials() const { return c_creds() != nullptr; }
+
+protected:
+    explicit LaterServerCredentials(grpc_server_credentials* credentials) : credentials_(credentials) {}
+    grpc_server_credentials* c_creds() const { return credentials_; }
+
+private:
+    virtual int AddPortToServer(const std::string&, grpc_server*) { return 0; }
+
+    grpc_server_credentials* credentials_;
+};
+
+TEST(InsecureCredentials, HaveTheFormOfLaterVersionsOfGrpc) {
+    service::keep_grpc();
+    EXPECT_TRUE(service::InsecureCredentials<LaterServerCredentials>({}).owns_credentials());
 }
 
 TEST_F(Access, AddressesThatOthersReachNeedProtection) {

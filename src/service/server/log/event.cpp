@@ -1,7 +1,8 @@
 #include "service/server/log/event.hpp"
 
-#include <google/protobuf/stubs/logging.h>
+#include <google/protobuf/stubs/common.h>
 #include <grpc/support/log.h>
+#include <grpcpp/version_info.h>
 #include <spdlog/formatter.h>
 #include <spdlog/logger.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -11,6 +12,10 @@
 #include <utility>
 
 #include "service/server/log/log_line.hpp"
+
+#if __has_include(<google/protobuf/stubs/logging.h>)
+#include <google/protobuf/stubs/logging.h>
+#endif
 
 namespace octopair::service {
 
@@ -59,6 +64,9 @@ private:
 /// Receives the messages of gRPC and protobuf; null: they are dropped.
 std::atomic<spdlog::logger*> grpc_log = nullptr;
 
+// Later versions of gRPC and protobuf have no handlers. They write messages to standard error by themselves.
+
+#if GRPC_CPP_VERSION_MAJOR == 1 && GRPC_CPP_VERSION_MINOR < 65
 void log_grpc_message(gpr_log_func_args* line) {
     spdlog::logger* const log = grpc_log;
     if (log == nullptr) return;
@@ -66,9 +74,20 @@ void log_grpc_message(gpr_log_func_args* line) {
     if (is_logged(*log, level)) log_text(*log, level, std::string("gRPC: ") + line->message);
 }
 
+void take_grpc_messages() { gpr_set_log_function(&log_grpc_message); }
+#else
+void take_grpc_messages() {}
+#endif
+
+#if GOOGLE_PROTOBUF_VERSION < 4022000
 void log_protobuf_message(google::protobuf::LogLevel, const char*, int, const std::string& words) {
     if (spdlog::logger* const log = grpc_log) log_text(*log, LogLevel::debug, "protobuf: " + words);
 }
+
+void take_protobuf_messages() { google::protobuf::SetLogHandler(&log_protobuf_message); }
+#else
+void take_protobuf_messages() {}
+#endif
 
 }  // namespace
 
@@ -88,8 +107,8 @@ void take_grpc_log(const std::shared_ptr<spdlog::logger>& log) {
     static std::shared_ptr<spdlog::logger> kept;
     kept = log;
     grpc_log = kept.get();
-    gpr_set_log_function(&log_grpc_message);
-    google::protobuf::SetLogHandler(&log_protobuf_message);
+    take_grpc_messages();
+    take_protobuf_messages();
 }
 
 std::shared_ptr<spdlog::logger> make_log(LogForm form, std::shared_ptr<spdlog::sinks::sink> sink) {

@@ -1,6 +1,6 @@
 #include "service/server/net/call_counting.hpp"
 
-#include <grpc/grpc.h>
+#include <grpc/grpc_security.h>
 #include <grpcpp/security/auth_context.h>
 #include <grpcpp/security/auth_metadata_processor.h>
 #include <grpcpp/security/server_credentials.h>
@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "service/protocol/octopair.grpc.pb.h"
+#include "service/server/net/insecure_credentials.hpp"
 #include "service/server/net/listener.hpp"
 
 namespace octopair::service {
@@ -56,7 +57,7 @@ private:
     Listener& listener_;
 };
 
-/// Counts the begins of calls without TLS. gRPC's C++ interface has processors for secure credentials alone.
+/// Counts the begins of calls without TLS.
 // NOLINTNEXTLINE(readability-function-size): gRPC's parameters.
 void process_insecure(void* listener, grpc_auth_context* context, const grpc_metadata*, std::size_t,
                       grpc_process_auth_metadata_done_cb done, void* call) {
@@ -69,25 +70,6 @@ void process_insecure(void* listener, grpc_auth_context* context, const grpc_met
     const bool good = static_cast<Listener*>(listener)->note_begin(find_number());
     done(call, nullptr, 0, nullptr, 0, good ? GRPC_STATUS_OK : GRPC_STATUS_UNAVAILABLE, good ? nullptr : refusal);
 }
-
-class InsecureCredentials final : public grpc::ServerCredentials {
-public:
-    explicit InsecureCredentials(Listener& listener) : listener_(listener) {}
-
-    void SetAuthMetadataProcessor(const std::shared_ptr<grpc::AuthMetadataProcessor>&) override {}
-
-private:
-    int AddPortToServer(const std::string& address, grpc_server* server) override {
-        grpc_server_credentials* const credentials = grpc_insecure_server_credentials_create();
-        grpc_server_credentials_set_auth_metadata_processor(
-            credentials, {.process = process_insecure, .destroy = nullptr, .state = &listener_});
-        const int port = grpc_server_add_http2_port(server, address.c_str(), credentials);
-        grpc_server_credentials_release(credentials);
-        return port;
-    }
-
-    Listener& listener_;
-};
 
 /// Lives as long as a call.
 class CountedCall final : public grpc::experimental::Interceptor {
@@ -129,7 +111,8 @@ private:
 }  // namespace
 
 std::shared_ptr<grpc::ServerCredentials> CallCounting::insecure_credentials() {
-    return std::make_shared<InsecureCredentials>(listener_);
+    return std::make_shared<InsecureCredentials<grpc::ServerCredentials>>(
+        grpc_auth_metadata_processor{.process = process_insecure, .destroy = nullptr, .state = &listener_});
 }
 
 void CallCounting::count_in(grpc::ServerCredentials& credentials) {
