@@ -3,15 +3,18 @@
 
 #include <atomic>
 #include <memory>
+#include <thread>
 
 #include "processes/leftovers.hpp"
 #include "service/gate.hpp"
 #include "service/guarded.hpp"
+#include "service/metrics_page.hpp"
 #include "service/protocol/limit_error.hpp"
 #include "service/served.hpp"
 #include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/fair_order.hpp"
 #include "service/server/jobs/kept_engine.hpp"
+#include "service/server_program.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
@@ -163,6 +166,23 @@ TEST_F(ServedFairness, OneClientLeavesAnEngineOfSmallJobs) {
     one.wait();
     for (Job& job : many_) job.wait();
     EXPECT_EQ(count(JobState::done), 5);
+}
+
+/// The spare engine is one more than the workers, so a client whom nobody disturbs has as many as there are workers.
+TEST_F(ServedFairness, OneClientAloneHasAsManyEnginesAsWorkers) {
+    const ServerProgram server({.arguments = "--engine processes --workers 2 --metrics localhost:0 --tokens '" +
+                                             folder_.file("tokens") + "'"});
+    const std::vector<Box3f> crowd(10'000, Box3f{{0, 0, 0}, {1, 1, 1}});  // 50 million pairs
+    const auto count_again_and_again = [&](const std::stop_token& stop) {
+        const auto engine = connect(server.address(), {.token = "0123456789abcdef"});
+        while (!stop.stop_requested()) (void)engine->count_pairs(Objects{crowd});
+    };
+    (void)connect(server.address(),
+                  {.token = "0123456789abcdef"});  // waits until the server listens and has written its log
+    const std::jthread first(count_again_and_again), second(count_again_and_again);
+    const std::string both_run = "\noctopair_jobs{state=\"running\"} 2\n";
+    EXPECT_TRUE(comes_true([&] { return metrics_page(server.log()).find(both_run) != std::string::npos; },
+                           std::chrono::minutes(1)));
 }
 
 /// Engines keep the memory of their largest job for later ones. A server gives it back when it is idle.

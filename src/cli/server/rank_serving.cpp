@@ -44,7 +44,7 @@ public:
         options_.engine = [this](unsigned) { return std::move(engine_); };
         // Small jobs and scenes run on threads of this process.
         options_.small_engine = [](unsigned threads) { return make_local_engine(threads); };
-        options_.engine_widths.instant = std::min(options_.engine_widths.small, threads_for_instant_jobs());
+        options_.engine_widths.instant = std::min(options_.engine_widths.large, threads_for_instant_jobs());
         options_.on_drain = [this] { end_.request_stop(); };
     }
 

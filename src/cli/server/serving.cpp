@@ -32,9 +32,9 @@ service::ServerOptions server_options_of(const ServeRequest& request) {
     options.engine_name = described.engine;
     const unsigned width = described.threads + described.workers;
     const bool local = request.engine.runs_in_caller();
-    // With worker processes no job is instant, because every job wakes another process. One engine more than cores for small jobs: a client
-    // can have all but one.
-    options.engine_widths = {width, width + (local ? 1 : 0), local ? std::min(width, threads_for_instant_jobs()) : 0};
+    // One engine more than threads or workers for small jobs, because a client can have all but one. With worker processes no job is
+    // instant, because every job wakes another process.
+    options.engine_widths = {width, width + 1, local ? std::min(width, threads_for_instant_jobs()) : 0};
     options.renewable_engines = local;
     options.engine = [choice = request.engine](unsigned one_width) {
         return make_engine(choice.with_width(one_width));
