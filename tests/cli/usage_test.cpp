@@ -97,6 +97,27 @@ TEST_F(Usage, WrongOptionsAreRefused) {
     EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.npy"});
 }
 
+TEST_F(Usage, UnknownSubcommandsAreNamed) {
+    EXPECT_EQ(run("detec a.npy").err, "octopair: detec: no such subcommand (see octopair --help)\n");
+    EXPECT_EQ(run("--quiet").err, "octopair: --quiet: no such subcommand (see octopair --help)\n");
+    EXPECT_EQ(run("").err, "octopair: A subcommand is required (see octopair --help)\n");
+    EXPECT_EQ(run("detect --none a.npy").err,
+              "octopair: The following argument was not expected: --none (see octopair --help)\n");
+}
+
+/// A script whose variable is not set writes an empty word. Without a join, a file or tokens the program would do something else.
+TEST_F(Usage, EmptyValuesAreRefused) {
+    save_boxes("a.npy", {0});
+    for (const std::string option : {"--against", "--padding", "--output", "--stats", "--token-file"}) {
+        EXPECT_EQ(run("detect a.npy " + option + " ''").err,
+                  "octopair: " + option + ": must not be empty (see octopair --help)\n");
+        EXPECT_EQ(run("detect a.npy " + option + "=").status, 2) << option;
+    }
+    EXPECT_EQ(run("serve --listen unix:s --tokens ''").status, 2);
+    EXPECT_EQ(run("cancel ''").status, 2);
+    EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.npy"});
+}
+
 #ifndef OCTOPAIR_WITH_PIPELINE
 TEST_F(Usage, WhatWasLeftOutIsSaid) {
     save_boxes("a.npy", {0});

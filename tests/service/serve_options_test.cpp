@@ -45,7 +45,8 @@ TEST_F(ServeOptions, WrongValuesNameFileAndKey) {
         "octopair: c.toml: max-memory: --max-memory: '8 GB' is not a number of bytes, for example 65536, 64K or 4G\n");
     EXPECT_EQ(refused("stall = 0\n"), "octopair: c.toml: stall: --stall: at least 1 second\n");
     EXPECT_EQ(refused("keep = 0\n"), "octopair: c.toml: keep: --keep: at least 1 second\n");
-    EXPECT_EQ(refused("state = ''\n"), "octopair: c.toml: state: --state: must name a folder\n");
+    EXPECT_EQ(refused("state = ''\n"), "octopair: c.toml: state: --state: must not be empty\n");
+    EXPECT_EQ(refused("tokens = \"\"\n"), "octopair: c.toml: tokens: --tokens: must not be empty\n");
     EXPECT_EQ(refused("quiet = 1\n"), "octopair: c.toml: quiet: --quiet: '1' is neither true nor false\n");
     EXPECT_EQ(refused("grace = 1\nlog = 'x'\n").find("octopair: c.toml: log: --log: 'x' is not a valid value"), 0u);
 }

@@ -55,7 +55,9 @@ void Command::footer(const std::string& text) { app_->footer(text); }
 void Command::callback(std::function<void()> done) { app_->callback(std::move(done)); }
 
 Option Command::add_option(const std::string& name, std::string& value, const std::string& description) {
-    return Option(*app_->add_option(name, value, description));
+    return Option(*app_->add_option(name, value, description)).check([](const std::string& text) {
+        return text.empty() ? "must not be empty" : "";
+    });
 }
 
 Option Command::add_option(const std::string& name, std::vector<std::string>& values, const std::string& description) {
@@ -100,7 +102,12 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app_->exit(success);
     } catch (const CLI::ParseError& error) {
-        throw Error(ErrorCode::usage, std::string(error.what()) + " (see " + app_->get_name() + " --help)");
+        const std::vector<std::string> unknown = app_->remaining();
+        const bool has_subcommand = !app_->get_subcommands().empty();
+        // CLI11 would say only that a subcommand is missing.
+        const std::string fault =
+            has_subcommand || unknown.empty() ? error.what() : unknown.front() + ": no such subcommand";
+        throw Error(ErrorCode::usage, fault + " (see " + app_->get_name() + " --help)");
     }
     return std::nullopt;
 }

@@ -72,6 +72,7 @@ public:
 
     // Requires for all overloads: `value`, `values`, and what `read` borrows outlive the parsing.
 
+    /// The value must not be empty: a script whose variable is not set would lose the option without a word.
     Option add_option(const std::string& name, std::string& value, const std::string& description = {});
     Option add_option(const std::string& name, std::vector<std::string>& values, const std::string& description);
     Option add_option(const std::string& name, const ReadText& read, const std::string& description);

@@ -104,8 +104,7 @@ void add_state(Command& command, service::ServerOptions& options) {
     command
         .add_option("--state", options.state_folder,
                     "folder for detached jobs, which survive the end of the server (default: no detached jobs)")
-        .type_name("DIR")
-        .check([](const std::string& folder) { return folder.empty() ? "must name a folder" : ""; });
+        .type_name("DIR");
     add_seconds(
         command,
         {"--keep", "SECONDS", "how long results of detached jobs are kept if they are not released (default 86400)"},
