@@ -121,12 +121,15 @@ TEST(ScenesBrownian, FramesMoveALittleFromTheFirst) {
     ASSERT_EQ(all.size(), objects * frames);
     EXPECT_EQ(test::hash_of(std::vector(all.begin(), all.begin() + objects)),
               test::hash_of(make_scene("uniform", objects, 1)));
-    const float side = all[0].max[0] - all[0].min[0];
+    const double side = double(all[0].max[0]) - double(all[0].min[0]);
+    constexpr double rounding = 1e-6;  // of float32 in the unit cube
     for (std::size_t i = objects; i < all.size(); ++i) {
-        const float step = all[i].min[0] - all[i - objects].min[0];
-        ASSERT_LE(std::abs(step), side / 7);
-        ASSERT_GE(all[i].min[0], 0);
-        ASSERT_LE(all[i].min[0], 1);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double step = double(all[i].min[axis]) - double(all[i - objects].min[axis]);
+            ASSERT_LE(std::abs(step), side / 8 + rounding);
+            ASSERT_GE(all[i].min[axis], 0);
+            ASSERT_LE(all[i].min[axis], 1);
+        }
     }
     EXPECT_EQ(test::hash_of(all), 6252328568775321793u);
 }
