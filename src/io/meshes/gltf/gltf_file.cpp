@@ -87,8 +87,9 @@ GltfFile::GltfFile(const std::string& path, const std::stop_token& stop)
     : GltfFile(path, content_of(path, stop), stop) {}
 
 GltfFile::GltfFile(std::string path, Buffer<std::byte> content, const std::stop_token& stop)
-    : path_(std::move(path)), stop_(stop), content_(std::move(content)), bytes_read_(content_.size()) {
-    if (content_.size() == 0) refuse(path_, "is empty");
+    : budget_(std::move(path), stop), content_(std::move(content)) {
+    budget_.add_file(content_.size());
+    if (content_.size() == 0) refuse(this->path(), "is empty");
     if (is_glb(content_.span())) {
         split_glb();
     } else {
@@ -99,7 +100,7 @@ GltfFile::GltfFile(std::string path, Buffer<std::byte> content, const std::stop_
 void GltfFile::split_glb() {
     const std::span<const std::byte> all = content_.span();
     const auto cut = [&](std::uint64_t bytes) {
-        refuse(path_, fmt::format("is cut: a GLB file of {} bytes, but it says that it has {}", all.size(), bytes));
+        refuse(path(), fmt::format("is cut: a GLB file of {} bytes, but it says that it has {}", all.size(), bytes));
     };
     if (all.size() < header_bytes) cut(header_bytes);
     if (const std::uint32_t version = number_at(all, 4); version != 2) {
@@ -115,7 +116,7 @@ void GltfFile::split_glb() {
         if (size > length - at) cut(at + size);
         const auto chunk = all.subspan(at, size);
         if (text.data() == nullptr) {
-            if (type != json_chunk) refuse(path_, "the first chunk of the GLB file is not JSON");
+            if (type != json_chunk) refuse(path(), "the first chunk of the GLB file is not JSON");
             text = chunk;
         } else if (type == binary_chunk && binary_chunk_.data() == nullptr) {
             binary_chunk_ = chunk;
@@ -127,7 +128,7 @@ void GltfFile::split_glb() {
 }
 
 void GltfFile::parse(std::span<const std::byte> text) {
-    root_ = parsed(text_of(text), path_, stop_);
+    root_ = parsed(text_of(text), path(), stop());
     version_ = version_of(fields());
 }
 
@@ -136,9 +137,9 @@ std::size_t GltfFile::count(std::string_view list) const { return array_or_empty
 JsonFields GltfFile::item(std::string_view list, std::uint64_t number) const {
     const json::array_t& items = array_or_empty(fields(), list);
     if (number >= items.size()) {
-        refuse(path_, fmt::format("refers to {}[{}], but the file has {} {}", list, number, items.size(), list));
+        refuse(path(), fmt::format("refers to {}[{}], but the file has {} {}", list, number, items.size(), list));
     }
-    return {items[number], fmt::format("{}: {}[{}]", path_, list, number)};
+    return {items[number], fmt::format("{}: {}[{}]", path(), list, number)};
 }
 
 BufferView GltfFile::view(std::uint64_t number) {
@@ -174,7 +175,7 @@ std::span<const std::byte> GltfFile::bytes_of(const JsonFields& buffer, std::uin
     const std::string& uri = buffer.text("uri");
     const auto scheme = scheme_of(uri);
     Buffer<std::byte> bytes = scheme == "data" ? embedded(buffer, uri) : other_file(buffer, uri);
-    if (scheme != "data") bytes_read_ += bytes.size();
+    if (scheme != "data") budget_.add_file(bytes.size());
     return buffers_.emplace(number, std::move(bytes)).first->second.span();
 }
 
@@ -185,7 +186,7 @@ Buffer<std::byte> GltfFile::embedded(const JsonFields& buffer, std::string_view 
     std::string_view data = uri.substr(comma + 1);
     std::string decoded;
     if (data.find('%') != std::string_view::npos) data = decoded = percent_decoded(data);
-    auto bytes = decoded_base64(data, stop_);
+    auto bytes = decoded_base64(data, stop());
     if (!bytes) buffer.refuse_key("uri", fmt::format("'{}' is not valid base64", shown_text(uri)));
     return std::move(*bytes);
 }
@@ -201,7 +202,7 @@ Buffer<std::byte> GltfFile::other_file(const JsonFields& buffer, std::string_vie
     if (name.empty() || name.find('\0') != std::string::npos) refuse_uri("is not the name of a file");
     if (name.starts_with('/')) refuse_uri("is an absolute name");
     // With ".", no name is that of a stream, as "-" is.
-    const auto parent = std::filesystem::path(path_).parent_path();
+    const auto parent = std::filesystem::path(path()).parent_path();
     const auto folder = parent.empty() ? std::filesystem::path(".") : parent;
     std::error_code error;
     std::filesystem::path file = folder / name;
@@ -212,26 +213,11 @@ Buffer<std::byte> GltfFile::other_file(const JsonFields& buffer, std::string_vie
     if (!std::filesystem::is_regular_file(file, error))
         buffer.refuse_key("uri", fmt::format("'{}' is not a regular file", shown_text(uri)));
     try {
-        return content_of(file.string(), stop_);
+        return content_of(file.string(), stop());
     } catch (const Error& failure) {
         if (failure.code() == ErrorCode::cancelled) throw;
         throw Error(failure.code(), fmt::format("{}: {}", buffer.place(), failure.what()));
     }
-}
-
-void GltfFile::charge(std::uint64_t count, std::uint64_t bytes) {
-    const std::uint64_t limit = (std::uint64_t(4) << 30) + 64 * bytes_read_;
-    if (count <= (limit - charged_) / bytes) {
-        charged_ += count * bytes;
-        return;
-    }
-    throw Error(ErrorCode::resource_limit,
-                fmt::format("{}: its content needs more than {} bytes of memory, the limit for {} bytes of files",
-                            path_, limit, bytes_read_));
-}
-
-void GltfFile::checkpoint() const {
-    if (stop_.stop_requested()) cancel();
 }
 
 bool may_need_assimp(const std::string& path) {

@@ -3,7 +3,6 @@
 // - The first bytes show whether a file is GLB, not its ending.
 // - A buffer is read when it is first used: from base64 in its URI, from the chunk of a GLB file, or from another file. The name
 //   of another file is relative to the folder of the glTF file. URIs with a scheme, such as http, and absolute names are refused.
-// - Readers call charge() before they allocate memory for what the file describes. So a small file cannot fill the memory.
 //
 // Source: Khronos, glTF 2.0 specification, sections 3 (JSON, buffers) and 4 (GLB).
 #pragma once
@@ -21,6 +20,7 @@
 #include "base/memory.hpp"
 #include "io/files/input_file.hpp"
 #include "io/json/json_fields.hpp"
+#include "io/meshes/read_budget.hpp"
 
 namespace octopair::io::gltf {
 
@@ -39,12 +39,12 @@ public:
     /// Like the constructor above, with the content of the file.
     GltfFile(std::string path, Buffer<std::byte> content, const std::stop_token& stop);
 
-    const std::string& path() const { return path_; }
+    const std::string& path() const { return budget_.path(); }
     /// Returns the version of glTF, for example "2.0".
     const std::string& version() const { return version_; }
     const nlohmann::json& root() const { return root_; }
     /// Returns the root as fields with the place "FILE".
-    JsonFields fields() const { return {root_, path_}; }
+    JsonFields fields() const { return {root_, path()}; }
 
     /// Returns the number of objects in an array of the root, for example "meshes"; 0 if the root does not have it.
     std::size_t count(std::string_view list) const;
@@ -55,12 +55,13 @@ public:
     /// Throws: Error{bad_input} if it is not inside its buffer, or the buffer cannot be read; Error{io_failed, cancelled}.
     BufferView view(std::uint64_t number);
 
-    /// Counts memory for `count` values of `bytes` each.
-    /// Throws: Error{resource_limit} if all counted memory is more than 4 GiB and 64 times the size of the files.
-    void charge(std::uint64_t count, std::uint64_t bytes);
-    /// Throws: Error{cancelled} after a stop request.
-    void checkpoint() const;
-    const std::stop_token& stop() const { return stop_; }
+    /// Returns the limits of reading, which count all files.
+    ReadBudget& budget() { return budget_; }
+    /// Calls ReadBudget::charge().
+    void charge(std::uint64_t count, std::uint64_t bytes) { budget_.charge(count, bytes); }
+    /// Calls ReadBudget::checkpoint().
+    void checkpoint() const { budget_.checkpoint(); }
+    const std::stop_token& stop() const { return budget_.stop(); }
 
 private:
     void split_glb();
@@ -70,14 +71,12 @@ private:
     Buffer<std::byte> embedded(const JsonFields& buffer, std::string_view uri) const;
     Buffer<std::byte> other_file(const JsonFields& buffer, std::string_view uri) const;
 
-    std::string path_;
-    std::stop_token stop_;
+    ReadBudget budget_;
     Buffer<std::byte> content_;
     std::span<const std::byte> binary_chunk_;  // of a GLB file
     nlohmann::json root_;
     std::string version_;
     std::map<std::uint64_t, Buffer<std::byte>> buffers_;  // those that are not in the chunk
-    std::uint64_t bytes_read_ = 0, charged_ = 0;
 };
 
 /// Returns whether a file may need Assimp: it is of glTF 1.0, or has meshes that are compressed with Draco. Looks at the text only, so

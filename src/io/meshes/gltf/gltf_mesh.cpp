@@ -92,7 +92,7 @@ GltfMesh MeshDecoder::decode(std::uint64_t number, std::string_view node) {
         const std::string place = fmt::format("{}.primitives[{}]", fields.place(), i);
         add_primitive(JsonFields(primitives[i], place), node, mesh);
     }
-    for (const auto* const vertices : {&mesh.triangles.vertices, &mesh.loose}) {
+    for (const auto* const vertices : {&mesh.shared.triangles.vertices, &mesh.shared.loose}) {
         for (const Point3d& vertex : *vertices) {
             for (const double at : vertex) mesh.largest = std::max(mesh.largest, std::abs(at));
         }
@@ -112,7 +112,7 @@ void MeshDecoder::add_primitive(const JsonFields& fields, std::string_view node,
     }
     if (fields.find("material") != nullptr) {
         const std::string material = name_in(file_.item("materials", whole_number(fields, "material")));
-        if (!material.empty()) mesh.materials.insert(material);
+        if (!material.empty()) mesh.shared.materials.insert(material);
     }
     mesh.has_targets |= !array_or_empty(fields, "targets").empty();
     if (primitive.positions.is_float()) {
@@ -125,9 +125,10 @@ void MeshDecoder::add_primitive(const JsonFields& fields, std::string_view node,
         mesh.first_incomplete = fmt::format("{}: its last {} of {} vertices make no complete face and are not read",
                                             primitive.place, corners - used, corners);
     }
-    const auto numbers = add_vertices(primitive, used, has_triangles(mode) ? mesh.triangles.vertices : mesh.loose);
+    const auto numbers =
+        add_vertices(primitive, used, has_triangles(mode) ? mesh.shared.triangles.vertices : mesh.shared.loose);
     const std::uint64_t count = triangle_count(mode, used);
-    auto& triangles = mesh.triangles.triangles;
+    auto& triangles = mesh.shared.triangles.triangles;
     file_.charge(count, sizeof triangles[0]);
     triangles.reserve(triangles.size() + count);
     for (std::uint64_t i = 0; i < count; ++i) {

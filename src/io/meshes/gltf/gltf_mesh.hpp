@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,22 +14,18 @@
 
 #include "io/meshes/gltf/accessor.hpp"
 #include "io/meshes/gltf/gltf_file.hpp"
-#include "octopair/shapes.hpp"
+#include "io/meshes/placed_meshes.hpp"
 
 namespace octopair::io::gltf {
 
 struct GltfMesh {
-    shape::Mesh triangles;
-    std::vector<Point3d> loose;  ///< vertices of points and lines
-    std::set<std::string> materials;
+    SharedMesh shared;        ///< its loose vertices are those of points and lines
     double largest = 0;       ///< largest coordinate, without its sign
     bool has_floats = false;  ///< true if coordinates are float32 in the file
     double step = 0;  ///< largest distance between neighbouring values of integers; 0 if no coordinates are integers
     bool has_targets = false;      ///< true if it has morph targets
     std::size_t incomplete = 0;    ///< number of primitives whose last vertices make no complete face
     std::string first_incomplete;  ///< what is wrong with the first of them, without the file
-
-    bool empty() const { return triangles.vertices.empty() && loose.empty(); }
 };
 
 /// Decodes meshes of one file. Keeps working memory from mesh to mesh.

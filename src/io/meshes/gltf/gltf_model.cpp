@@ -64,7 +64,7 @@ GltfModel::GltfModel(GltfFile& file, const std::function<void(double)>& progress
         meshes_.push_back(decoder.decode(instances[i].mesh, instances[i].name));
         if (progress) progress(double(i + 1) / double(instances.size()));
     }
-    std::erase_if(instances, [this](const Instance& instance) { return mesh(instance).empty(); });
+    std::erase_if(instances, [this](const Instance& instance) { return mesh(instance).shared.empty(); });
 }
 
 // Floats were rounded to float32 in the file. Its transforms count as rounded, too, because exporters compute them in float32: so they

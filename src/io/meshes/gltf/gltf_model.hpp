@@ -23,6 +23,7 @@ public:
     const NodeTree& tree() const { return tree_; }
     /// Returns the instances whose meshes have vertices.
     const std::vector<Instance>& instances() const { return tree_.instances(); }
+    std::vector<Instance>& instances() { return tree_.instances(); }
     GltfMesh& mesh(const Instance& instance) { return meshes_[numbers_.at(instance.mesh)]; }
     const GltfMesh& mesh(const Instance& instance) const { return meshes_[numbers_.at(instance.mesh)]; }
 

@@ -1,0 +1,34 @@
+// ReadBudget: limits what a reader of octopair takes for a file, and stops it after a stop request.
+//
+// Readers call charge() before they allocate memory for what the file describes. So a small file cannot fill the memory.
+#pragma once
+
+#include <cstdint>
+#include <stop_token>
+#include <string>
+
+namespace octopair::io {
+
+class ReadBudget {
+public:
+    /// `path`: the file, for messages.
+    ReadBudget(std::string path, const std::stop_token& stop) : path_(std::move(path)), stop_(stop) {}
+
+    const std::string& path() const { return path_; }
+    /// Counts bytes of files that were read. They raise the limit.
+    void add_file(std::uint64_t bytes) { file_bytes_ += bytes; }
+    /// Returns the most bytes that the content of the files may take: 4 GiB, and 64 times the size of the files.
+    std::uint64_t limit() const { return (std::uint64_t(4) << 30) + 64 * file_bytes_; }
+    /// Counts memory for `count` values of `bytes` each. Throws: Error{resource_limit} if all counted memory is more than limit().
+    void charge(std::uint64_t count, std::uint64_t bytes);
+    /// Throws: Error{cancelled} after a stop request.
+    void checkpoint() const;
+    const std::stop_token& stop() const { return stop_; }
+
+private:
+    std::string path_;
+    std::stop_token stop_;
+    std::uint64_t file_bytes_ = 0, charged_ = 0;
+};
+
+}  // namespace octopair::io
