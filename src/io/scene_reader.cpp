@@ -13,6 +13,7 @@
 #include "io/meshes/gltf/gltf_scene.hpp"
 #include "io/meshes/mesh_reader.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
+#include "io/meshes/three_mf/three_mf_scene.hpp"
 
 namespace octopair::io {
 
@@ -124,6 +125,7 @@ LoadedScene read_known(const std::string& path, const SceneContent& content, con
             if (is_gltf_ending(format_ending(path))) {
                 if (auto scene = read_gltf_scene(path, content, stop)) return std::move(*scene);
             }
+            if (is_three_mf_ending(format_ending(path))) return read_three_mf_scene(path, content, stop);
             return read_mesh_scene(path, content);
 #endif
         case SceneFormat::unknown:

@@ -12,6 +12,7 @@
 #include "io/files/input_file.hpp"
 #include "io/formats.hpp"
 #include "io/formats/content_marks.hpp"
+#include "io/meshes/three_mf/three_mf_scene.hpp"
 
 namespace octopair::io {
 
@@ -62,6 +63,9 @@ std::string version_of(const std::string& path) {
     std::string head(std::size_t(std::min<std::uint64_t>(file.size(), FileHead::head_bytes)), '\0');
     file.read(0, std::as_writable_bytes(std::span(head)));
     const std::string ending = format_ending(path);
+#ifdef OCTOPAIR_WITH_MESHES
+    if (is_three_mf_ending(ending)) return three_mf_version(path);
+#endif
     if (std::string version = binary_version(head, ending); !version.empty()) return version;
     std::erase(head, '\r');
     for (const Place& place : places) {

@@ -19,6 +19,7 @@
 #include "io/meshes/mesh_file.hpp"
 #include "io/meshes/mesh_shapes.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
+#include "io/meshes/three_mf/three_mf_scene.hpp"
 #endif
 
 namespace octopair::io {
@@ -181,6 +182,7 @@ shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& sce
     if (is_gltf_ending(ending)) {
         if (auto mesh = read_gltf_mesh(path, scene, stop)) return std::move(*mesh);
     }
+    if (is_three_mf_ending(ending)) return read_three_mf_mesh(path, scene, stop);
     const MeshFile file(path, true);
     scene.largest_rounded = std::max(scene.largest_rounded, file.largest_rounded());
     for (std::string& warning : import_warnings(file)) scene.warnings.push_back(std::move(warning));

@@ -1,0 +1,98 @@
+// ModelParser: fills a ModelPart with what its XML says.
+//
+// - Elements of extensions are skipped. Those within an object that may change its shape are noted.
+// - Elements that 3MF does not define are skipped and counted, because programs write such elements.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "io/meshes/three_mf/extensions.hpp"
+#include "io/meshes/three_mf/mesh_builder.hpp"
+#include "io/meshes/three_mf/model_part.hpp"
+#include "io/meshes/three_mf/xml_parser.hpp"
+
+namespace octopair::io::three_mf {
+
+class ModelParser final : public XmlHandler {
+public:
+    /// Borrows `part`. `place`: the file and the part, for messages.
+    ModelParser(ModelPart& part, const std::string& place, const PartReading& reading);
+
+    /// Parses a text to its end, and checks what only the whole part shows. Throws: as parse_model_part().
+    void parse(const TextSource& source);
+
+    void prefix(std::string_view prefix, std::string_view uri) override;
+    void begin(const XmlElement& element) override;
+    void end() override;
+
+private:
+    /// What the parser is in.
+    enum class Place : std::uint8_t {
+        document,
+        model,
+        resources,
+        base_materials,
+        object,
+        mesh,
+        vertices,
+        triangles,
+        components,
+        build,
+        item,
+        skipped,
+    };
+    struct Rule;
+    static const Rule* rule_for(Place within, std::string_view name);
+
+    /// Returns the place within an element. Calls what its rule says.
+    Place enter(Place within, const XmlElement& element);
+    void note_extension(Place within, const XmlElement& element);
+    void begin_model(const XmlElement& element);
+    void begin_resources(const XmlElement& element);
+    void begin_build(const XmlElement& element);
+    void begin_item(const XmlElement& element);
+    void begin_materials(const XmlElement& element);
+    void begin_base(const XmlElement& element);
+    void begin_object(const XmlElement& element);
+    void begin_mesh(const XmlElement& element);
+    void begin_vertices(const XmlElement& element);
+    void begin_triangles(const XmlElement& element);
+    void begin_components(const XmlElement& element);
+    void begin_component(const XmlElement& element);
+    void begin_vertex(const XmlElement& element);
+    void begin_triangle(const XmlElement& element);
+    void end_mesh();
+    void end_object();
+
+    std::uint32_t identifier(const XmlElement& element, std::string_view key) const;
+    std::uint32_t new_identifier(const XmlElement& element);
+    Reference reference(const XmlElement& element, std::string_view kind);
+    void check_component(const Reference& component) const;
+    void refuse_second(bool& has, std::string_view what);
+    void note(CountedNote& to, std::string_view what) const;
+    void name_materials();
+    ModelObject& object() { return part_.objects.back(); }
+
+    ModelPart& part_;
+    const PartReading reading_;
+    XmlParser parser_;
+    MeshBuilder mesh_;
+    Prefixes prefixes_;  // of the element <model>
+    std::string core_;   // namespace of 3MF in this part
+    std::vector<Place> places_ = {Place::document};
+    std::uint64_t elements_ = 0;
+    std::optional<Property> own_property_;                                   // of the object
+    std::vector<std::set<Property>> properties_;                             // of each object
+    std::unordered_map<std::uint32_t, std::vector<std::string>> materials_;  // groups of base materials, by identifier
+    std::unordered_map<std::uint32_t, std::uint64_t> lines_;                 // of each object and group of materials
+    std::set<std::uint32_t> other_groups_;                                   // groups of properties of extensions
+    std::vector<std::string>* group_ = nullptr;                              // group of the element <basematerials>
+    bool has_resources_ = false, has_build_ = false, has_vertices_ = false, has_triangles_ = false;
+};
+
+}  // namespace octopair::io::three_mf
