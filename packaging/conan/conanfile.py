@@ -39,7 +39,7 @@ REQUIREMENTS = {
     "service": ["grpc/[>=1.54.3 <2]", "protobuf/[>=3.21 <7]", "openssl/[>=3 <4]", "xxhash/[>=0.8.1 <1]", "spdlog/[>=1.10 <2]",
                 "nlohmann_json/[>=3.11 <4]", "prometheus-cpp/[>=1.1 <2]"],
     "program": ["cli11/[>=2.3 <3]", "fmt/[>=9]", "nlohmann_json/[>=3.11 <4]"],
-    "meshes": ["assimp/[>=5.2 <6]"],
+    "meshes": ["assimp/[>=5.2 <6]", "expat/[>=2.5 <3]", "zlib/[>=1.2.13 <2]"],
     "mpi": ["openmpi/[>=4.1 <6]"],
     "systemd": ["libsystemd/[>=252]"],
     "viewer": ["boost/[>=1.74 <2]", "zlib/[>=1.2.13 <2]", "nlohmann_json/[>=3.11 <4]"],
@@ -47,7 +47,7 @@ REQUIREMENTS = {
 # Package or component -> name that the project's CMakeLists.txt uses, wherever the recipe of the package says something else.
 CMAKE_FILES = {"onetbb": "TBB", "highway": "hwy", "eigen": "Eigen3", "boost": "Boost", "grpc": "gRPC", "protobuf": "Protobuf",
                "openssl": "OpenSSL", "spdlog": "spdlog", "nlohmann_json": "nlohmann_json", "prometheus-cpp": "prometheus-cpp",
-               "cli11": "CLI11", "fmt": "fmt", "assimp": "assimp", "openmpi": "MPI", "zlib": "ZLIB"}
+               "cli11": "CLI11", "fmt": "fmt", "assimp": "assimp", "expat": "EXPAT", "openmpi": "MPI", "zlib": "ZLIB"}
 CMAKE_TARGETS = {"onetbb::libtbb": "TBB::tbb", "highway::hwy": "hwy::hwy", "openmpi": "MPI::MPI_CXX"}
 
 # Component -> option, or None, and what the component requires. The library of a component is octopair or octopair_COMPONENT.
@@ -65,7 +65,7 @@ PROGRAM_REQUIRES = {
     "program": ["cli11::cli11", "fmt::fmt", "nlohmann_json::nlohmann_json"],
     "service": ["grpc::grpc++_reflection", "xxhash::xxhash", "spdlog::spdlog", "prometheus-cpp::prometheus-cpp-pull",
                 "nlohmann_json::nlohmann_json"],
-    "meshes": ["assimp::assimp"],
+    "meshes": ["assimp::assimp", "expat::expat", "zlib::zlib"],
     "systemd": ["libsystemd::libsystemd"],
 }
 

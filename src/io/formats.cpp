@@ -44,6 +44,10 @@ FileHead read_head(const std::string& path) {
     FileHead head{std::string(std::size_t(std::min<std::uint64_t>(file.size(), FileHead::head_bytes)), '\0'),
                   file.size()};
     file.read(0, std::as_writable_bytes(std::span(head.bytes)));
+    if (head.bytes.starts_with(FileHead::zip_mark)) {
+        head.tail.resize(std::size_t(std::min<std::uint64_t>(file.size(), FileHead::tail_bytes)));
+        file.read(file.size() - head.tail.size(), std::as_writable_bytes(std::span(head.tail)));
+    }
     return head;
 }
 

@@ -10,6 +10,9 @@
 #include "io/boxes/npy.hpp"
 #include "io/scene_reader.hpp"
 #include "io/temporary.hpp"
+#ifdef OCTOPAIR_WITH_MESHES
+#include "io/three_mf_reading.hpp"
+#endif
 #include "scene/recording/recorder.hpp"
 #include "scene/recording/replay.hpp"
 #include "scene/recording_source.hpp"
@@ -42,6 +45,20 @@ INSTANTIATE_TEST_SUITE_P(
                       std::pair("mesh.obj", cube_obj), std::pair("mesh.off", cube_off),
                       std::pair("mesh.stl", triangle_stl), std::pair("mesh.ply", triangle_ply)),
     [](const auto& test) { return std::string(test.param.first).substr(std::string(test.param.first).find('.') + 1); });
+
+#ifdef OCTOPAIR_WITH_MESHES
+INSTANTIATE_TEST_SUITE_P(
+    OfPackages, EveryAllocation,
+    ::testing::Values(std::pair(
+        "mesh.3mf",
+        package_of(model_text("<basematerials id='5'><base name='a material with a long name'/></basematerials>"
+                              "<object id='1' name='a part with a long name' pid='5' pindex='0'>" +
+                                  tetrahedron() +
+                                  "</object><object id='2'><components><component objectid='1'/></components>"
+                                  "</object>",
+                              "<item objectid='2'/><item objectid='1'/>")))),
+    [](const auto&) { return "ThreeMf"; });
+#endif
 
 TEST_P(EveryAllocation, OfAReaderMayFail) {
     const auto& [name, content] = GetParam();

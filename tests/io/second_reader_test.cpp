@@ -117,7 +117,7 @@ const std::map<std::string, std::string> known_differences = {
 TEST(SecondReader, ReadsTheSameSurfaces) {
     const fs::path models = OCTOPAIR_DATA "/assimp_models";
     if (!fs::exists(models)) GTEST_SKIP() << "no data; scripts/data unpacks it";
-    const std::set<std::string> endings = {".obj", ".stl", ".ply", ".off", ".gltf", ".glb"};
+    const std::set<std::string> endings = {".obj", ".stl", ".ply", ".off", ".gltf", ".glb", ".3mf"};
     std::map<std::string, std::string> differences;
     std::size_t files = 0;
     for (const auto& entry : fs::recursive_directory_iterator(models)) {

@@ -220,12 +220,16 @@ bool is_obj(std::string_view text) {
     return vertex;
 }
 
-/// A ZIP archive begins with a name. Returns the format that the names in the head show.
-std::string_view zip_format(std::string_view bytes) {
-    if (!bytes.starts_with("PK\x03\x04") || bytes.size() < 30) return {};
+/// A ZIP archive begins with a name. Returns the format that the names in the head and in the directory show.
+std::string_view zip_format(const FileHead& head) {
+    const std::string_view bytes = head.bytes;
+    if (!bytes.starts_with(FileHead::zip_mark) || bytes.size() < 30) return {};
     const std::size_t length = number_at(bytes, 26) & 0xFFFF;
     if (bytes.substr(30, length).ends_with(".npy")) return ".npz";
-    return bytes.find("3D/3dmodel.model") != std::string_view::npos ? ".3mf" : "";
+    const auto has_name = [&](std::string_view name) {
+        return bytes.find(name) != std::string_view::npos || head.tail.find(name) != std::string::npos;
+    };
+    return has_name("3D/3dmodel.model") || (has_name("_rels/.rels") && has_name(".model")) ? ".3mf" : "";
 }
 
 std::string_view text_format(const FileHead& head) {
@@ -291,7 +295,7 @@ std::string_view marked_format(const FileHead& head) {
     }
     // 3DS: a chunk that is as long as the file.
     if (head.bytes.size() >= 6 && head.bytes.starts_with("MM") && number_at(head.bytes, 2) == head.size) return ".3ds";
-    if (const std::string_view zip = zip_format(head.bytes); !zip.empty()) return zip;
+    if (const std::string_view zip = zip_format(head); !zip.empty()) return zip;
     return text_format(head);
 }
 

@@ -14,8 +14,10 @@ namespace octopair::io {
 struct FileHead {
     std::string bytes;       ///< at most head_bytes
     std::uint64_t size = 0;  ///< of the whole file
+    std::string tail = {};   ///< of a ZIP archive: the last bytes, at most tail_bytes, which have its directory
 
-    static constexpr std::size_t head_bytes = 4096;
+    static constexpr std::size_t head_bytes = 4096, tail_bytes = 65536;
+    static constexpr std::string_view zip_mark = "PK\x03\x04";
 };
 
 /// Returns the beginning of a file as text for a search: UTF-8, without byte order mark. UTF-16 is narrowed to ASCII.

@@ -10,9 +10,9 @@
 namespace octopair::io::three_mf {
 
 Model::Model(Package& package, const std::function<void(double)>& progress) : package_(package) {
-    std::string start = package.find_start();
-    const TextSource text = package.text_of(start, "the package", progress);
-    parts_.push_back(parse_model_part(std::move(start), text, {true, package.budget()}));
+    std::string name = package.find_start();
+    const TextSource text = package.text_of(name, "the package", progress);
+    parts_.push_back(parse_model_part(std::move(name), text, {true, package.budget()}));
     add_parts(start().items, progress);
     for (const ModelObject& object : start().objects) add_parts(object.components, progress);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
