@@ -149,7 +149,7 @@ TEST(ThreeMf, OtherPartsAreFoundByTheirPaths) {
     EXPECT_EQ(scene.names, (Names{"ROOT/car/wheel", "ROOT/wheel"}));
     EXPECT_EQ(scene.shapes->shapes.size(), 1u);
     expect_in(three_mf_refusal(package_of(start)),
-              "has no part 3D/Objects/wheel a.model, which 3D/3dmodel.model: line 1 needs");
+              "has no part 3d/objects/WHEEL a.model, which 3D/3dmodel.model: line 1 needs");
     const std::string inches = model_text(object_text(1, tetrahedron()), "", "unit='inch'");
     expect_in(three_mf_refusal(package_of(start, {{"3D/Objects/wheel a.model", inches}})),
               "the unit is inch, but that of 3D/3dmodel.model is millimeter");

@@ -27,9 +27,8 @@ inline std::string deflated(std::string_view text, int level = 6) {
     stream.next_out = reinterpret_cast<Bytef*>(packed.data());
     stream.avail_out = uInt(packed.size());
     deflate(&stream, Z_FINISH);
-    packed.resize(packed.size() - stream.avail_out);
     deflateEnd(&stream);
-    return packed;
+    return packed.substr(0, stream.total_out);
 }
 
 /// How an entry is written.

@@ -160,6 +160,8 @@ private:
         add(coarse_, "with a mesh that stands for a finer shape, which is not read");
         add(extended_,
             fmt::format("with an extension that may change the shape and is not read, such as {}", first_extension_));
+        if (coarse_ > 0) build_.not_read.push_back(fmt::format("finer shapes ({})", coarse_));
+        if (extended_ > 0) build_.not_read.push_back(fmt::format("extensions of objects ({})", extended_));
     }
 
     Model& model_;

@@ -19,6 +19,7 @@ namespace octopair::io::three_mf {
 struct Build {
     PlacedMeshes placed;
     std::vector<std::string> warnings;
+    std::vector<std::string> not_read;  ///< LoadedScene::not_read
 };
 
 /// Takes the meshes of the model. The labels stay in the model.

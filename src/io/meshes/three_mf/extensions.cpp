@@ -44,6 +44,13 @@ bool is_harmless_space(std::string_view space) {
     return std::find(harmless_spaces.begin(), harmless_spaces.end(), space) != harmless_spaces.end();
 }
 
+std::string shown_space(std::string_view space) {
+    std::string text(space.substr(0, 200));
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c <= ' ' || c > '~'; }, '?');
+    return text;
+}
+
 std::set<std::string> check_required_extensions(std::string_view value, const Prefixes& prefixes,
                                                 const std::string& place) {
     std::set<std::string> spaces;
@@ -61,7 +68,7 @@ std::set<std::string> check_required_extensions(std::string_view value, const Pr
         if (is_core_space(space) || is_harmless_space(space)) continue;
         refuse(place, fmt::format("needs the extension '{}' ({}), which octopair does not read; it may change shapes: "
                                   "write the file without it, or as glTF, OBJ or STL",
-                                  shown_text(prefix), shown_text(space)));
+                                  shown_text(prefix), shown_space(space)));
     }
     return spaces;
 }

@@ -28,6 +28,9 @@ std::string_view version_in(std::string_view space);
 /// Returns whether octopair reads an extension, or the extension says nothing about shapes.
 bool is_harmless_space(std::string_view space);
 
+/// Returns a namespace for messages: its first 200 characters in printable ASCII, because the end of a URI has the version.
+std::string shown_space(std::string_view space);
+
 /// Checks the value of the attribute requiredextensions. Returns the namespaces that it names. `place`: the file, part and line, for
 /// messages.
 /// Throws: Error{bad_input} that names an extension which octopair does not read, or a prefix without a namespace.

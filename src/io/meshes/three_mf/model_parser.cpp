@@ -103,7 +103,7 @@ void ModelParser::note_extension(Place within, const XmlElement& element) {
     }
     const bool in_object = within == Place::object || within == Place::mesh;
     if (!in_object || is_harmless_space(name.space) || !object().extension.empty()) return;
-    object().extension = fmt::format("<{}> of {}", shown_text(name.local), shown_text(name.space));
+    object().extension = fmt::format("<{}> of {}", shown_text(name.local), shown_space(name.space));
 }
 
 void ModelParser::end() {
@@ -118,7 +118,7 @@ void ModelParser::begin_model(const XmlElement& element) {
     if (!is_core_space(core_)) {
         refuse_at(parser_,
                   fmt::format("is of the namespace {}; octopair reads 3MF core 2015/02: write the file as this",
-                              shown_text(core_)));
+                              shown_space(core_)));
     }
     part_.version = version_in(core_);
     const char* const unit = element.find("unit");

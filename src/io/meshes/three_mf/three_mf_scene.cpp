@@ -34,6 +34,7 @@ LoadedScene scene_of_package(Package& package, const SceneContent& content) {
     Build build = make_build(model);
     LoadedScene scene = scene_of(build.placed, content, package.budget());
     scene.warnings = warnings_of(model, build);
+    scene.not_read = std::move(build.not_read);
     scene.space = {UpAxis::z, short_unit(model.start().unit)};
     return scene;
 }
