@@ -111,6 +111,33 @@ TEST(ThreeMfPackage, DirectoriesThatLieAreRefused) {
     expect_archive_refusal(with(directory + 46, 1), "has no part _rels/.rels");          // name
 }
 
+TEST(ThreeMfPackage, HeadersOfEntriesThatLieAreRefused) {
+    const std::string file = package_writer({.deflate = false}).bytes();
+    const std::size_t header = file.find("PK\x03\x04", 4);
+    // The mark, method, checksum, sizes, lengths of the name and of further fields, and the name.
+    for (const std::size_t at : {2, 8, 14, 18, 22, 26, 28, 30}) {
+        std::string changed = file;
+        changed[header + at] = char(changed[header + at] + 1);
+        expect_archive_refusal(changed, "3D/3dmodel.model: is described in two ways in the archive");
+    }
+    // Further fields that move the data of the first entry into the second one.
+    std::string changed = file;
+    changed[29] = 1;
+    expect_archive_refusal(changed, "_rels/.rels: is described in two ways in the archive");
+}
+
+TEST(ThreeMfPackage, Zip64DirectoriesThatLieAreRefused) {
+    const std::string file = package_writer({.zip64 = true}).bytes(true);
+    const std::size_t locator = file.rfind("PK\x06\x07"), directory = file.find("PK\x01\x02");
+    std::string changed = file;
+    changed[locator + 8] = char(changed[locator + 8] + 1);
+    expect_archive_refusal(changed, "has no ZIP64 directory where it should be");
+    changed = file;
+    changed[directory + 46 + 11 + 4] = 9;  // kind of the field with the sizes
+    changed[directory + 46 + 11 + 5] = 9;
+    expect_archive_refusal(changed, "has a directory that is damaged");
+}
+
 TEST(ThreeMfPackage, DamagedDataAreRefused) {
     for (const bool deflate : {false, true}) {
         const std::string file = package_writer({.deflate = deflate, .sizes_follow = true}).bytes();
@@ -169,7 +196,7 @@ TEST(ThreeMfXml, ALongTagIsParsedInLinearTime) {
     io::three_mf::XmlParser parser("f", handler);
     parser.parse("<a b='");
     const std::string piece(65536, 'x');
-    for (int i = 0; i < 256; ++i) parser.parse(piece);
+    for (int i = 0; i < 64; ++i) parser.parse(piece);
     parser.parse("'/>");
     parser.finish();
     EXPECT_EQ(parser.line(), 1u);

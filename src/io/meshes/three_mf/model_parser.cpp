@@ -109,8 +109,8 @@ void ModelParser::note_extension(Place within, const XmlElement& element) {
 void ModelParser::end() {
     const Place place = places_.back();
     places_.pop_back();
-    if (place == Place::mesh) end_mesh();
-    if (place == Place::object) end_object();
+    if (place == Place::mesh) finish_mesh();
+    if (place == Place::object) finish_object();
 }
 
 void ModelParser::begin_model(const XmlElement& element) {
@@ -218,12 +218,12 @@ void ModelParser::begin_component(const XmlElement& element) {
     object().components.push_back(std::move(component));
 }
 
-void ModelParser::end_mesh() {
+void ModelParser::finish_mesh() {
     object().mesh = mesh_.take();
     properties_.back() = mesh_.properties();
 }
 
-void ModelParser::end_object() { part_.numbers.emplace(object().id, part_.objects.size() - 1); }
+void ModelParser::finish_object() { part_.numbers.emplace(object().id, part_.objects.size() - 1); }
 
 std::uint32_t ModelParser::identifier(const XmlElement& element, std::string_view key) const {
     const char* const text = element.find(key);

@@ -66,8 +66,8 @@ private:
     void begin_component(const XmlElement& element);
     void begin_vertex(const XmlElement& element);
     void begin_triangle(const XmlElement& element);
-    void end_mesh();
-    void end_object();
+    void finish_mesh();
+    void finish_object();
 
     std::uint32_t identifier(const XmlElement& element, std::string_view key) const;
     std::uint32_t new_identifier(const XmlElement& element);

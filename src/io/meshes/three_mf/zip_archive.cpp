@@ -108,7 +108,7 @@ struct ZipArchive::Directory {
 ZipArchive::ZipArchive(std::span<const std::byte> bytes, ReadBudget& budget) : bytes_(bytes), budget_(budget) {
     const Directory directory = find_directory();
     read_directory(directory);
-    check_places(directory.offset);
+    find_ends(directory.offset);
 }
 
 ZipArchive::Directory ZipArchive::find_directory() const {
@@ -173,18 +173,19 @@ void ZipArchive::read_directory(const Directory& directory) {
     if (entries_.size() != directory.entries) refuse_directory();
 }
 
-void ZipArchive::check_places(std::uint64_t directory_offset) const {
-    std::vector<const ZipEntry*> by_place;
+/// Sets ZipEntry::end. Throws: Error{bad_input} if an entry does not fit before it.
+void ZipArchive::find_ends(std::uint64_t directory_offset) {
+    std::vector<ZipEntry*> by_place;
     by_place.reserve(entries_.size());
-    for (const ZipEntry& entry : entries_) by_place.push_back(&entry);
+    for (ZipEntry& entry : entries_) by_place.push_back(&entry);
     std::sort(by_place.begin(), by_place.end(),
               [](const ZipEntry* a, const ZipEntry* b) { return a->offset < b->offset; });
     for (std::size_t i = 0; i < by_place.size(); ++i) {
-        const ZipEntry& entry = *by_place[i];
-        const std::uint64_t end = i + 1 < by_place.size() ? by_place[i + 1]->offset : directory_offset;
+        ZipEntry& entry = *by_place[i];
+        entry.end = i + 1 < by_place.size() ? by_place[i + 1]->offset : directory_offset;
         const std::uint64_t head = local_bytes + entry.name.size();
-        if (entry.offset > directory_offset || end - entry.offset < head ||
-            end - entry.offset - head < entry.packed_size)
+        if (entry.offset > directory_offset || entry.end - entry.offset < head ||
+            entry.end - entry.offset - head < entry.packed_size)
             refuse_entry(entry, "overlaps another entry of the archive; write the file again");
     }
 }
@@ -192,7 +193,8 @@ void ZipArchive::check_places(std::uint64_t directory_offset) const {
 std::span<const std::byte> ZipArchive::packed(const ZipEntry& entry) const {
     constexpr std::uint16_t encrypted = 0x2041, sizes_follow = 0x8;
     if ((entry.flags & encrypted) != 0) refuse_entry(entry, "is encrypted; write the file without a password");
-    const std::string_view head = text_in(bytes_).substr(std::size_t(entry.offset));
+    const std::string_view head =
+        text_in(bytes_).substr(std::size_t(entry.offset), std::size_t(entry.end - entry.offset));
     const auto refuse_head = [&] {
         refuse_entry(entry, "is described in two ways in the archive; write the file again");
     };

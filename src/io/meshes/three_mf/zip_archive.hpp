@@ -27,6 +27,7 @@ struct ZipEntry {
     std::uint32_t crc = 0;
     std::uint64_t packed_size = 0, size = 0;
     std::uint64_t offset = 0;  ///< of the header before the content
+    std::uint64_t end = 0;     ///< offset of what follows the content: the next entry, or the directory
 };
 
 class ZipArchive {
@@ -48,7 +49,7 @@ private:
     struct Directory;
     Directory find_directory() const;
     void read_directory(const Directory& directory);
-    void check_places(std::uint64_t directory_offset) const;
+    void find_ends(std::uint64_t directory_offset);
     std::span<const std::byte> packed(const ZipEntry& entry) const;
     void inflate(const ZipEntry& entry, std::span<const std::byte> from, const Consumer& consumer);
     void copy(const ZipEntry& entry, std::span<const std::byte> from, const Consumer& consumer);
