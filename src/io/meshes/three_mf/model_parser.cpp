@@ -146,7 +146,7 @@ void ModelParser::begin_item(const XmlElement& element) {
 }
 
 void ModelParser::begin_materials(const XmlElement& element) {
-    reading_.budget.charge(1, sizeof *group_ + 8 * sizeof(void*));
+    reading_.budget.charge(1, sizeof(std::vector<std::string>) + 8 * sizeof(void*));
     group_ = &materials_[new_identifier(element)];
 }
 

@@ -42,7 +42,7 @@ ModelPart parse_model_part(std::string name, const TextSource& source, const Par
     return part;
 }
 
-std::string parse_version(std::string name, const TextSource& source, ReadBudget& budget) {
+std::string parse_version(const std::string& name, const TextSource& source, ReadBudget& budget) {
     VersionHandler handler;
     XmlParser parser(place_of_part(name, budget), handler);
     source([&](std::string_view piece) {

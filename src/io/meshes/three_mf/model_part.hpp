@@ -84,6 +84,6 @@ using TextSource = std::function<void(const std::function<bool(std::string_view)
 ModelPart parse_model_part(std::string name, const TextSource& source, const PartReading& reading);
 
 /// Returns the version of the namespace of a part. Reads only its first element. Throws: as parse_model_part().
-std::string parse_version(std::string name, const TextSource& source, ReadBudget& budget);
+std::string parse_version(const std::string& name, const TextSource& source, ReadBudget& budget);
 
 }  // namespace octopair::io::three_mf

@@ -64,9 +64,9 @@ shape::Mesh read_three_mf_mesh(const std::string& path, LoadedScene& scene, cons
 
 std::string three_mf_version(const std::string& path) {
     Package package(path, {});
-    std::string start = package.find_start();
+    const std::string start = package.find_start();
     const auto text = package.text_of(start, "the package");
-    const std::string version = three_mf::parse_version(std::move(start), text, package.budget());
+    const std::string version = three_mf::parse_version(start, text, package.budget());
     return version.empty() ? "" : "core " + version;
 }
 

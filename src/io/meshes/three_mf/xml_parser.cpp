@@ -61,7 +61,7 @@ struct XmlParser::Callbacks {
         const auto text = [](const char* characters) { return characters == nullptr ? "" : characters; };
         guarded(user, [&](XmlParser& self) { self.handler_.prefix(text(prefix), text(uri)); });
     }
-    static void doctype(void* user, const char*, const char*, const char*, int) {
+    static void doctype(void* user) {
         guarded(user, [](XmlParser& self) {
             refuse(self.place_,
                    fmt::format("line {}: has a DTD (<!DOCTYPE>), which 3MF does not allow; remove it", self.line()));
@@ -77,7 +77,8 @@ XmlParser::XmlParser(std::string place, XmlHandler& handler)
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), Callbacks::begin, Callbacks::end);
     XML_SetStartNamespaceDeclHandler(parser_.get(), Callbacks::prefix);
-    XML_SetStartDoctypeDeclHandler(parser_.get(), Callbacks::doctype);
+    XML_SetStartDoctypeDeclHandler(
+        parser_.get(), [](void* user, const char*, const char*, const char*, int) { Callbacks::doctype(user); });
 }
 
 XmlParser::~XmlParser() = default;
