@@ -1,8 +1,10 @@
 """Small scenes in every format that octopair reads. Each has two contents, whose answers differ."""
 import base64
 import dataclasses
+import io
 import json
 import struct
+import zipfile
 
 # A tetrahedron and its faces. A mesh has two of them, at different places on the x axis.
 CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 2))
@@ -53,6 +55,24 @@ def obj(places):
         parts.append(f"o part{part}\n" + "".join("v {} {} {}\n".format(*corner) for corner in _corners([place])))
         parts.append("".join("f " + " ".join(str(4 * part + corner + 1) for corner in face) + "\n" for face in FACES))
     return "".join(parts).encode()
+
+
+def three_mf(places):
+    objects, items = [], []
+    for part, place in enumerate(places):
+        vertices = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*corner) for corner in _corners([place]))
+        triangles = "".join('<triangle v1="{}" v2="{}" v3="{}"/>'.format(*face) for face in FACES)
+        objects.append(f'<object id="{part + 1}"><mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh></object>')
+        items.append(f'<item objectid="{part + 1}"/>')
+    model = (f'<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>{"".join(objects)}</resources>'
+             f'<build>{"".join(items)}</build></model>')
+    relationships = ('<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="r" '
+                     'Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/3D/3dmodel.model"/></Relationships>')
+    package = io.BytesIO()
+    with zipfile.ZipFile(package, "w") as archive:
+        for name, text in (("_rels/.rels", relationships), ("3D/3dmodel.model", model)):
+            archive.writestr(zipfile.ZipInfo(name), text)
+    return package.getvalue()
 
 
 def stl(places):
@@ -138,6 +158,7 @@ FORMATS = (
     Format("part.obj", ("detect", "scene.json"), obj(PARTS_NEAR), obj((5, 5.25)), b"v 0 0 0\n",
            (("scene.json", json.dumps({"objects": [_ball("a", 0), {"shape": {"type": "mesh", "file": "part.obj"}, "position": [0, 0, 0.9]}]}).encode()),)),
     Format("mesh.obj", ("detect", "mesh.obj", "--stage", "features"), obj(PARTS_NEAR), obj(PARTS_FAR), b"v 0 0 0\n"),
+    Format("mesh.3mf", ("detect", "mesh.3mf", "--stage", "features"), three_mf(PARTS_NEAR), three_mf(PARTS_FAR), b" "),
     Format("mesh.stl", ("detect", "mesh.stl"), stl(PARTS_NEAR), stl(PARTS_FAR), b"solid c\nendsolid c\n"),
     Format("mesh.ply", ("detect", "mesh.ply", "--objects", "triangle", "--stage", "pairs"), ply(PARTS_NEAR), ply(PARTS_FAR), b"0 0 0\n"),
     Format("mesh.off", ("detect", "mesh.off", "--objects", "triangle", "--stage", "pairs"), off(PARTS_NEAR), off(PARTS_FAR), b"# end\n"),

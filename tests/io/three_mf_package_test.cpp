@@ -49,8 +49,8 @@ TEST(ThreeMfPackage, AllFormsOfArchivesAreRead) {
 }
 
 TEST(ThreeMfPackage, OtherFilesAreRefused) {
-    expect_archive_refusal("", "is not a ZIP archive, which a 3MF file is");
-    expect_archive_refusal("<model/>", "is not a ZIP archive");
+    expect_archive_refusal("", "f.3mf: is empty");
+    expect_archive_refusal("<model/>", "is not a ZIP archive, which a 3MF file is");
     expect_archive_refusal(ZipWriter().bytes(), "has no part _rels/.rels");
     ZipWriter other;
     other.add("word/document.xml", "<w/>");

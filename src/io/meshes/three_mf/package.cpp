@@ -81,6 +81,7 @@ Package::Package(const std::string& path, const std::stop_token& stop)
 
 Package::Package(std::string path, Buffer<std::byte> content, const std::stop_token& stop)
     : budget_(std::move(path), stop), content_(std::move(content)), archive_([this]() -> ZipArchive {
+          if (content_.size() == 0) refuse(budget_.path(), "is empty");
           budget_.add_file(content_.size());
           return {content_.span(), budget_};
       }()) {
