@@ -1,4 +1,4 @@
-// Compares engines on equal scenes: threads, worker processes, and worker processes arranged like in the paper.
+// Compares engines on equal scenes: threads and worker processes.
 //
 //     octopair_engines [--workers K] [--rounds N] [--quick] [--json FILE]
 //

@@ -24,7 +24,7 @@ LAYERS = {
     "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "summary"]),
     "octree": ("octal codes; encode, scatter, count, scan", ["octal_code"]),
     "verification": ("a second algorithm that checks results", []),
-    "engine": ("what all engines share", ["arrangement", "engine", "job", "pair_list"]),
+    "engine": ("what all engines share", ["engine", "job", "pair_list"]),
     "engine/threads": ("the engine of threads", ["octants"]),
     "engine/processes": ("the engine of worker processes", ["processes"]),
     "engine/mpi": ("the engine of MPI ranks", ["mpi"]),
@@ -81,7 +81,7 @@ USES = {
     "bench/machine": ["base"],
     "bench/baselines": ["octree"],
     "bench/paper": ["base", "samples", "bench/machine", "bench/baselines"],
-    "bench/cluster": ["base", "engine/mpi", "samples", "bench/machine", "bench/paper"],
+    "bench/cluster": ["base", "engine/mpi", "samples", "bench/machine", "bench/baselines", "bench/paper"],
     "bench/scaling": ["base", "samples", "bench/machine", "bench/cluster"],
     "bench/program": ["base", "samples", "io", "cli/command", "cli/ranks", "bench/paper", "bench/cluster", "bench/scaling"],
 }

@@ -16,9 +16,9 @@ namespace octopair::cluster {
 
 namespace {
 
-double slowest_of(const EachRank& ranks, double RankCosts::*step) {
+double slowest_of(const EachRank& ranks, double Costs::*step) {
     double most = 0;
-    for (const RankCosts& costs : ranks) most = std::max(most, costs.*step);
+    for (const Costs& costs : ranks) most = std::max(most, costs.*step);
     return most;
 }
 
@@ -46,7 +46,7 @@ double port_bytes(const Measured& measured) {
 
 double max_messages(const EachRank& ranks) {
     std::uint64_t most = 0;
-    for (const RankCosts& costs : ranks) most = std::max(most, costs.messages_sent);
+    for (const Costs& costs : ranks) most = std::max(most, costs.messages_sent);
     return double(most);
 }
 
@@ -149,11 +149,11 @@ std::string components_text(const std::vector<Measured>& all, const Network& net
         double seconds;
     };
     const Component components[] = {
-        {"octants (plan)", {}, slowest_of(ranks, &RankCosts::plan)},
-        {"octal codes, sort", published.octal_codes + published.sort, slowest_of(ranks, &RankCosts::build)},
+        {"octants (plan)", {}, slowest_of(ranks, &Costs::plan)},
+        {"octal codes, sort", published.octal_codes + published.sort, slowest_of(ranks, &Costs::build)},
         {"merge (each machine)", published.merge_machine, merged_on_machines(ranks)},
         {"merge at the master", published.merge_master, merged_at_master(ranks)},
-        {"scan", {}, slowest_of(ranks, &RankCosts::scan)},
+        {"scan", {}, slowest_of(ranks, &Costs::scan)},
         {"network (model)", {}, modelled(*most, network).network}};
     std::string text = fmt::format("Components in microseconds, {} objects on {} processors; as published: on {}\n\n",
                                    paper::grouped(most->setup.objects), most->setup.ranks, published.processors);
@@ -180,7 +180,7 @@ double critical_path(const Measured& measured) {
     if (measured.setup.arrangement == Arrangement::shared) return slowest(ranks);
     double seconds = merged_on_machines(ranks) + merged_at_master(ranks);
     for (const Step& step : computing_steps) {
-        if (step.seconds != &RankCosts::merge) seconds += slowest_of(ranks, step.seconds);
+        if (step.seconds != &Costs::merge) seconds += slowest_of(ranks, step.seconds);
     }
     return seconds;
 }

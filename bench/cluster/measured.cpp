@@ -12,25 +12,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double sum_of(const EachRank& ranks, std::uint64_t RankCosts::*count) {
+double sum_of(const EachRank& ranks, std::uint64_t Costs::*count) {
     return std::accumulate(ranks.begin(), ranks.end(), 0.0,
-                           [&](double sum, const RankCosts& costs) { return sum + double(costs.*count); });
+                           [&](double sum, const Costs& costs) { return sum + double(costs.*count); });
 }
 
 struct Count {
     const char* name;
-    std::uint64_t RankCosts::*count;
+    std::uint64_t Costs::*count;
 };
 constexpr Count counts[] = {
-    {"bytes_sent", &RankCosts::bytes_sent},
-    {"messages_sent", &RankCosts::messages_sent},
-    {"objects", &RankCosts::objects},
-    {"shared_objects", &RankCosts::shared_objects},
-    {"objects_received", &RankCosts::objects_received},
-    {"octants", &RankCosts::octants},
+    {"bytes_sent", &Costs::bytes_sent},
+    {"messages_sent", &Costs::messages_sent},
+    {"objects", &Costs::objects},
+    {"shared_objects", &Costs::shared_objects},
+    {"objects_received", &Costs::objects_received},
+    {"octants", &Costs::octants},
 };
 
-Json rank_json(const RankCosts& costs) {
+Json rank_json(const Costs& costs) {
     Json seconds;
     for (const Step& step : computing_steps) seconds[step.name] = costs.*step.seconds;
     seconds["mpi"] = costs.mpi;
@@ -41,12 +41,12 @@ Json rank_json(const RankCosts& costs) {
 
 Json ranks_json(const EachRank& ranks) {
     Json json = Json::array();
-    for (const RankCosts& costs : ranks) json.push_back(rank_json(costs));
+    for (const Costs& costs : ranks) json.push_back(rank_json(costs));
     return json;
 }
 
-RankCosts rank_of(const Json& json) {
-    RankCosts costs;
+Costs rank_of(const Json& json) {
+    Costs costs;
     for (const Step& step : computing_steps) json.at("cpu_seconds").at(step.name).get_to(costs.*step.seconds);
     json.at("cpu_seconds").at("mpi").get_to(costs.mpi);
     for (const Count& count : counts) json.at(count.name).get_to(costs.*count.count);
@@ -73,7 +73,7 @@ Arrangement arrangement_of(std::string_view name) {
                 "'" + std::string(name) + "' is not an arrangement of ranks; there are: shared, paper");
 }
 
-double computing(const RankCosts& costs) {
+double computing(const Costs& costs) {
     double seconds = 0;
     for (const Step& step : computing_steps) seconds += costs.*step.seconds;
     return seconds;
@@ -81,19 +81,19 @@ double computing(const RankCosts& costs) {
 
 double slowest(const EachRank& ranks) {
     double most = 0;
-    for (const RankCosts& costs : ranks) most = std::max(most, computing(costs));
+    for (const Costs& costs : ranks) most = std::max(most, computing(costs));
     return most;
 }
 
 double mean(const EachRank& ranks) {
     double all = 0;
-    for (const RankCosts& costs : ranks) all += computing(costs);
+    for (const Costs& costs : ranks) all += computing(costs);
     return all / double(ranks.size());
 }
 
-double Measured::bytes_per_object() const { return sum_of(together, &RankCosts::bytes_sent) / double(setup.objects); }
-double Measured::messages_per_rank() const { return sum_of(together, &RankCosts::messages_sent) / double(setup.ranks); }
-double Measured::shared() const { return sum_of(together, &RankCosts::shared_objects) / double(setup.objects); }
+double Measured::bytes_per_object() const { return sum_of(together, &Costs::bytes_sent) / double(setup.objects); }
+double Measured::messages_per_rank() const { return sum_of(together, &Costs::messages_sent) / double(setup.ranks); }
+double Measured::shared() const { return sum_of(together, &Costs::shared_objects) / double(setup.objects); }
 
 std::string measured_json(const std::vector<Measured>& all) {
     Json runs = Json::array();

@@ -10,12 +10,17 @@
 
 namespace octopair::cluster {
 
+/// How ranks divide the work.
+enum class Arrangement : std::uint8_t {
+    shared,  ///< octopair's: each rank has an equal part of the objects, and the ranks share every step
+    paper,   ///< the paper's: rank 0 has all objects at first, and merges and scans alone (paper_master.hpp)
+};
+
 /// One scene on a number of ranks.
 struct Setup {
     std::string scene = "uniform";  ///< kind of samples/scenes.hpp, seed 1
     std::uint64_t objects = 0;
     unsigned ranks = 1;
-    /// `paper`: rank 0 has all objects, like the paper's master. `shared`: each rank has an equal part.
     Arrangement arrangement = Arrangement::shared;
     unsigned ranks_per_machine = 2;  ///< only for Arrangement::paper
 
@@ -29,8 +34,12 @@ std::string_view arrangement_name(Arrangement arrangement);
 /// Returns the arrangement with this name. Throws: Error{usage} if no arrangement has this name.
 Arrangement arrangement_of(std::string_view name);
 
+/// Costs of a call on a rank. Only the paper's arrangement merges.
+struct Costs : RankCosts {
+    double merge = 0;  ///< seconds of merging sorted lists
+};
 /// Median of each step, for each rank.
-using EachRank = std::vector<RankCosts>;
+using EachRank = std::vector<Costs>;
 
 struct Measured {
     Setup setup;
@@ -47,7 +56,7 @@ struct Measured {
 };
 
 /// Returns the processor seconds of computing: of one rank, of the slowest rank, or on average.
-double computing(const RankCosts& costs);
+double computing(const Costs& costs);
 double slowest(const EachRank& ranks);
 double mean(const EachRank& ranks);
 inline double imbalance(const EachRank& ranks) { return slowest(ranks) / mean(ranks); }
@@ -59,12 +68,11 @@ inline double efficiency(const EachRank& one, const EachRank& ranks) {
 /// One step in the costs of a rank.
 struct Step {
     const char* name;
-    double RankCosts::*seconds;
+    double Costs::*seconds;
 };
 inline constexpr Step computing_steps[] = {
-    {"join", &RankCosts::join}, {"plan", &RankCosts::plan},   {"route", &RankCosts::route},
-    {"pack", &RankCosts::pack}, {"build", &RankCosts::build}, {"merge", &RankCosts::merge},
-    {"scan", &RankCosts::scan}, {"order", &RankCosts::order},
+    {"join", &Costs::join},   {"plan", &Costs::plan},   {"route", &Costs::route}, {"pack", &Costs::pack},
+    {"build", &Costs::build}, {"merge", &Costs::merge}, {"scan", &Costs::scan},   {"order", &Costs::order},
 };
 
 /// Writes or reads a JSON array with one object per measurement. Throws: Error{engine_failed} for text of another form.

@@ -18,17 +18,12 @@ PlacedBoxes where_the_engine_says(Engine& engine, std::span<const Box3f> boxes) 
 
 std::unique_ptr<Engine> make_processes(unsigned workers) { return make_process_engine(workers); }
 
-std::unique_ptr<Engine> make_paper(unsigned workers) {
-    return make_process_engine({.workers = workers, .arrangement = Arrangement::paper});
-}
-
 }  // namespace
 
 std::vector<Contender> contenders() {
     return {{local_name, make_local_engine, where_they_are},
             {processes_name, make_processes, where_they_are},
-            {processes_name + ", boxes allocated", make_processes, where_the_engine_says},
-            {paper_name, make_paper, where_they_are}};
+            {processes_name + ", boxes allocated", make_processes, where_the_engine_says}};
 }
 
 }  // namespace octopair::bench

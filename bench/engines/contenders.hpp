@@ -25,7 +25,6 @@ struct Contender {
 
 inline const std::string local_name = "local";
 inline const std::string processes_name = "processes";
-inline const std::string paper_name = "processes, as in the paper";
 
 /// Returns all contenders. The pairs of the first contender are the reference.
 std::vector<Contender> contenders();

@@ -28,7 +28,7 @@ MakeText measure_cluster(const cluster::StudyPlan& plan, cli::Cluster& ranks, co
     std::vector<cluster::Measured> all;
     for (const std::string& scene : plan.scenes) {
         for (const std::uint64_t objects : plan.objects) {
-            for (const Arrangement arrangement : plan.arrangements) {
+            for (const cluster::Arrangement arrangement : plan.arrangements) {
                 const cluster::Setup setup{scene, objects, 1, arrangement, plan.ranks_per_machine};
                 ranks.joint(
                     [&] { all.push_back(cluster::measure_on_ranks(MPI_COMM_WORLD, setup, plan.rounds, stop)); });

@@ -65,7 +65,7 @@ int run_machines(const MachinesRequest& request, const MachinesScene& scene) {
     cluster::StudyPlan plan;
     plan.scenes = {scene.scene};
     plan.objects = scene.objects;
-    plan.arrangements = {Arrangement::shared, Arrangement::paper};
+    plan.arrangements = {cluster::Arrangement::shared, cluster::Arrangement::paper};
     plan.ranks_per_machine = ranks_per_machine;
     plan.ranks = {1};
     for (const unsigned machines : request.machines) plan.ranks.push_back(machines * ranks_per_machine);

@@ -26,7 +26,6 @@
 #include <stop_token>
 #include <vector>
 
-#include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/input.hpp"
 
@@ -34,19 +33,11 @@ namespace [[gnu::visibility("default")]] octopair {
 
 struct MpiOptions {
     unsigned threads = 1;  ///< threads of each rank; 0: one per core
-    /// Must be the same on all ranks. `paper` runs the paper's algorithm:
-    ///   1. the first rank, the master, receives all objects and distributes them in equal runs;
-    ///   2. each rank builds a sorted list, and the first rank of each machine merges the lists of its machine;
-    ///   3. the master merges these lists and scans with all of its threads. Its piece has all pairs.
-    /// The master then needs more memory than the local engine.
-    Arrangement arrangement = Arrangement::shared;
-    unsigned ranks_per_machine = 2;  ///< with Arrangement::paper: consecutive ranks that count as one machine; >= 1
 };
 
 /// Returns an engine that uses a duplicate of `comm`. Collective.
 /// Requires: all ranks destroy the engine before MPI_Finalize.
-/// Throws: Error{usage} before MPI_Init_thread or after MPI_Finalize, if the ranks' arrangements differ, or if
-/// `ranks_per_machine` is 0; Error{engine_failed} if MPI fails.
+/// Throws: Error{usage} before MPI_Init_thread or after MPI_Finalize; Error{engine_failed} if MPI fails.
 std::unique_ptr<Engine> make_mpi_engine(MPI_Comm comm, const MpiOptions& options = {});
 
 /// Moves the pieces of all ranks, in rank order, to `pairs` of rank 0. The lists of the other ranks become empty. Collective.
@@ -73,8 +64,7 @@ using IndexedInput = InputOf<IndexedObjects>;
 /// Stores this rank's piece of the pairs in `pairs`. All pieces, in rank order, are the pairs that find_pairs() would return for all
 /// objects in the order of their indices. Use this function for indices of your own, or for more than 2^32 - 1 objects. Collective.
 /// Throws: as Engine::find_pairs(); Error{resource_limit} if a rank has or receives more than 2^32 - 1 objects;
-/// Error{bad_input} for an index that occurs twice; Error{usage} if `engine` is not an MPI engine or has the paper's
-/// arrangement.
+/// Error{bad_input} for an index that occurs twice; Error{usage} if `engine` is not an MPI engine.
 /// Complexity: finds all pairs and then drops those beyond Options::limit.
 Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair64>& pairs, const Options& options = {},
                      std::stop_token stop = {});
@@ -86,8 +76,7 @@ struct RankCosts {
     double plan = 0;   ///< plans the octants
     double route = 0;  ///< finds the ranks that receive each object
     double pack = 0;   ///< packs the objects to send, and decodes the positions of received ones
-    double build = 0;  ///< builds the octree of the received objects; a sorted list in the paper's arrangement
-    double merge = 0;  ///< merges lists, in the paper's arrangement
+    double build = 0;  ///< builds the octree of the received objects
     double scan = 0;   ///< finds the pairs
     double order = 0;  ///< sorts the pairs into ascending order
     double mpi = 0;    ///< CPU time inside of MPI calls, including time that MPI spends polling

@@ -17,7 +17,6 @@
 #include <memory>
 #include <string>
 
-#include "octopair/arrangement.hpp"
 #include "octopair/engine.hpp"
 
 /// Path of octopair-worker in the installed octopair package. CMake defines it for targets that link octopair::processes of an
@@ -29,8 +28,7 @@
 namespace [[gnu::visibility("default")]] octopair {
 
 struct ProcessOptions {
-    unsigned workers = 0;                           ///< number of workers, at most 256; 0: one per core
-    Arrangement arrangement = Arrangement::shared;  ///< with `paper` the application merges and scans
+    unsigned workers = 0;  ///< number of workers, at most 256; 0: one per core
     /// Path of octopair-worker, of the same version. If empty, the path in the environment variable OCTOPAIR_WORKER. If that is
     /// not set either, the first octopair-worker found in: the folder of the application's program; ../libexec/octopair from
     /// there; the installation of this library; the package; the configured installation; the build tree.

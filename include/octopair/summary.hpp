@@ -13,8 +13,7 @@ struct StepSeconds {
     /// Appends the entries to the lists of their octants; the paper's sort. Encode and scatter run in one pass, whose time is
     /// divided by a sample.
     double scatter = 0;
-    double scan = 0;   ///< finds the pairs; the paper's scan
-    double merge = 0;  ///< merges sorted lists; 0 except in the paper's arrangement
+    double scan = 0;  ///< finds the pairs; the paper's scan
 };
 
 /// Outcome of Options::verify.

@@ -177,8 +177,6 @@ class Engine:
         Threads of a local engine; 0: one per core.
     workers : int
         Processes of ``"processes"``; 0: one per core.
-    arrangement : {"shared", "paper"}
-        How worker processes divide the work. ``"paper"`` runs the algorithm of the paper, for comparison.
     **client
         Options of a connection (:func:`octopair.remote.client_options`), such as ``token``, ``authority`` and ``tls``.
 
@@ -193,12 +191,7 @@ class Engine:
     3
     """
 
-    def __init__(self, kind: str = "local", *, threads: int = 0, workers: int = 0, arrangement: str = "shared",
-                 **client: Any) -> None:
-        if arrangement not in ("shared", "paper"):
-            raise UsageError(f"arrangement: {arrangement!r} is neither 'shared' nor 'paper'")
-        if arrangement == "paper" and kind != "processes":
-            raise UsageError("arrangement: only engines of worker processes have one here; for MPI see octopair.mpi.make_engine")
+    def __init__(self, kind: str = "local", *, threads: int = 0, workers: int = 0, **client: Any) -> None:
         if ":" in _arrays.text(kind, "kind"):
             if threads or workers:
                 raise UsageError("threads and workers are settings of the server, not of a connection")
@@ -214,7 +207,7 @@ class Engine:
         elif kind == "processes":
             if threads:
                 raise UsageError("threads: this engine has worker processes; pass workers")
-            self._start(_core.Engine.processes(_arrays.whole(workers, "workers", 256), worker_program(), arrangement == "paper"), "processes")
+            self._start(_core.Engine.processes(_arrays.whole(workers, "workers", 256), worker_program()), "processes")
         else:
             raise UsageError(f"kind: {kind!r} is neither 'local' nor 'processes' nor an address (unix:PATH or HOST:PORT)")
 

@@ -30,15 +30,14 @@ class StepSeconds:
 
     Attributes
     ----------
-    encode, count, scatter, scan, merge : float
-        See ``octopair/summary.hpp``. `merge` is 0 except in the paper's arrangement.
+    encode, count, scatter, scan : float
+        See ``octopair/summary.hpp``.
     """
 
     encode: float
     count: float
     scatter: float
     scan: float
-    merge: float
 
 
 @dataclasses.dataclass(frozen=True)

@@ -76,7 +76,7 @@ class MpiEngine(Engine):
         return _mpi.last_costs(self._engine)
 
 
-def make_engine(comm: Any, *, threads: int = 1, arrangement: str = "shared") -> MpiEngine:
+def make_engine(comm: Any, *, threads: int = 1) -> MpiEngine:
     """Returns an engine that uses a duplicate of an mpi4py communicator. Collective.
 
     Parameters
@@ -85,8 +85,6 @@ def make_engine(comm: Any, *, threads: int = 1, arrangement: str = "shared") -> 
         Communicator.
     threads : int
         Threads of each rank; 0: one per core.
-    arrangement : {"shared", "paper"}
-        ``"paper"`` runs the algorithm of the paper, for comparison.
     """
     try:
         from mpi4py import MPI
@@ -94,9 +92,7 @@ def make_engine(comm: Any, *, threads: int = 1, arrangement: str = "shared") -> 
         raise UsageError("engines of MPI ranks need mpi4py") from error
     if not isinstance(comm, MPI.Comm):
         raise InputTypeError(f"comm: a {type(comm).__name__} is not a communicator of mpi4py")
-    if arrangement not in ("shared", "paper"):
-        raise UsageError(f"arrangement: {arrangement!r} is neither 'shared' nor 'paper'")
-    made = _mpi.make_engine(MPI._addressof(comm), threads, arrangement == "paper")
+    made = _mpi.make_engine(MPI._addressof(comm), threads)
     engine = MpiEngine.__new__(MpiEngine)
     engine._start(made, "mpi")
     return engine

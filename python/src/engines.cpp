@@ -13,9 +13,8 @@ std::shared_ptr<PythonEngine> local_engine(unsigned threads) {
     return wrap([&] { return make_local_engine(threads); }, false);
 }
 
-std::shared_ptr<PythonEngine> process_engine(unsigned workers, const std::string& worker_program, bool paper) {
-    const Arrangement arrangement = paper ? Arrangement::paper : Arrangement::shared;
-    return wrap([&] { return make_process_engine(ProcessOptions{workers, arrangement, worker_program}); });
+std::shared_ptr<PythonEngine> process_engine(unsigned workers, const std::string& worker_program) {
+    return wrap([&] { return make_process_engine(ProcessOptions{workers, worker_program}); });
 }
 
 /// Returns (pairs, summary).
@@ -80,8 +79,7 @@ void bind_engines(py::module_& module) {
         .def("__len__", &ArrayInput::size);
     py::class_<PythonEngine, std::shared_ptr<PythonEngine>>(module, "Engine")
         .def_static("local", &local_engine, py::arg("threads") = 0)
-        .def_static("processes", &process_engine, py::arg("workers") = 0, py::arg("worker_program") = "",
-                    py::arg("paper") = false)
+        .def_static("processes", &process_engine, py::arg("workers") = 0, py::arg("worker_program") = "")
         .def("find_pairs", &find_pairs, py::arg("input"), py::arg("options"), py::arg("progress") = py::none())
         .def("count_pairs", &count_pairs, py::arg("input"), py::arg("options"), py::arg("progress") = py::none())
         .def("allocate_boxes", &allocate_boxes, py::arg("count"), py::arg("float64") = false)

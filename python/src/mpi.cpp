@@ -13,10 +13,9 @@ namespace octopair::python {
 namespace {
 
 /// `communicator` is the address of an MPI_Comm.
-std::shared_ptr<PythonEngine> mpi_engine(std::uintptr_t communicator, unsigned threads, bool paper) {
+std::shared_ptr<PythonEngine> mpi_engine(std::uintptr_t communicator, unsigned threads) {
     const MPI_Comm comm = *reinterpret_cast<MPI_Comm*>(communicator);
-    const MpiOptions options{.threads = threads, .arrangement = paper ? Arrangement::paper : Arrangement::shared};
-    return wrap([&] { return make_mpi_engine(comm, options); });
+    return wrap([&] { return make_mpi_engine(comm, {.threads = threads}); });
 }
 
 /// Finds pairs, gathers them on rank 0, and returns (pairs of rank 0, summary).
@@ -71,7 +70,6 @@ py::dict costs_of(PythonEngine& engine) {
     row["route"] = costs.route;
     row["pack"] = costs.pack;
     row["build"] = costs.build;
-    row["merge"] = costs.merge;
     row["scan"] = costs.scan;
     row["order"] = costs.order;
     row["mpi"] = costs.mpi;
@@ -94,7 +92,7 @@ PYBIND11_MODULE(_mpi, module) {
     py::module_::import("octopair._core").attr("mark_used")();
     register_errors();
     watch_end_of_interpreter();
-    module.def("make_engine", &mpi_engine, py::arg("communicator"), py::arg("threads"), py::arg("paper"));
+    module.def("make_engine", &mpi_engine, py::arg("communicator"), py::arg("threads"));
     module.def("find_pairs", &find_pairs_here, py::arg("engine"), py::arg("input"), py::arg("options"));
     module.def("gather_pairs", &gather_pairs_of, py::arg("engine"), py::arg("input"), py::arg("options"));
     module.def("find_pairs64", &find_pairs64_here, py::arg("engine"), py::arg("input"), py::arg("indices"),

@@ -9,7 +9,7 @@ namespace octopair::python {
 py::tuple summary_tuple(const Summary& summary) {
     const StepSeconds& steps = summary.steps;
     return py::make_tuple(summary.pairs, summary.truncated, summary.seconds, summary.entries,
-                          py::make_tuple(steps.encode, steps.count, steps.scatter, steps.scan, steps.merge),
+                          py::make_tuple(steps.encode, steps.count, steps.scatter, steps.scan),
                           summary.verification.done, summary.verification.seconds, summary.verification.not_checked);
 }
 

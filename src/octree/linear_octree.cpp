@@ -105,7 +105,6 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
     count_path(blocks.size() == 1 ? Path::build_one_block : Path::build_blocks);
     if (ranges.size() > 1) count_path(Path::count_ranges);
     const BuildSteps steps{source, space(), directory(), memory_, stop};
-    assembled_ = false;
     executor.for_each(blocks.size(), [&](std::size_t i) { steps.encode_and_scatter(blocks[i]); });
     for (const NumberedBlock& block : blocks) {
         if (memory_.valid[block.number] == 0) throw Invalid{block.objects.begin};
@@ -146,19 +145,6 @@ std::vector<CellEntry> LinearOctree::entries(OctantIndex octant) const {
     all.reserve(std::size_t(entry_count(octant)));
     for_each_run(octant, [&](std::span<const CellEntry> run) { all.insert(all.end(), run.begin(), run.end()); });
     return all;
-}
-
-void LinearOctree::assemble(OctreeLayout layout, std::span<const SortedList> lists, const std::stop_token& stop) {
-    auto clock = std::chrono::steady_clock::now();
-    layout_ = std::move(layout);
-    std::uint64_t all = 0;
-    for (const SortedList& list : lists) all += list.entries.size();
-    assembled_ = true;
-    merged_.resize_discard(std::size_t(all));
-    begins_.resize(octants().size() + 1);
-    begins_.back() = merge_lists(lists, {merged_.span(), std::span(begins_).first(octants().size()), {}}, stop);
-    seconds_ = {};
-    seconds_.merge = seconds_since(clock);
 }
 
 }  // namespace octopair

@@ -23,7 +23,6 @@
 #include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
 #include "octree/build/build_steps.hpp"
-#include "octree/build/sorted_list.hpp"
 #include "octree/directory.hpp"
 #include "octree/executor.hpp"
 #include "octree/sample.hpp"
@@ -33,7 +32,7 @@ namespace octopair {
 
 /// Seconds of the steps. Encode and scatter run together; their time is divided by a sample of the batches.
 struct BuildSeconds {
-    double encode = 0, scatter = 0, count = 0, merge = 0;
+    double encode = 0, scatter = 0, count = 0;
 };
 
 /// An octree's space and octants. Both are a function of a sample of the objects.
@@ -83,23 +82,14 @@ public:
     /// Builds in the existing octants: faster than build(), and as good while boxes have moved little. Throws as build() does.
     void refill(const EntrySource& source, Executor& executor, std::stop_token stop);
 
-    /// Replaces the contents by the merged lists. Merges one octant after another, on the calling thread.
-    /// Requires: the objects of each list precede those of the next.
-    /// Throws: Error{cancelled}.
-    void assemble(OctreeLayout layout, std::span<const SortedList> lists, const std::stop_token& stop);
-
     const Space& space() const { return layout_.space; }
     std::span<const Octant> octants() const { return layout_.directory.octants(); }
     const Directory& directory() const { return layout_.directory; }
     /// Calls visit(entries) for each run of adjacent entries of an octant, in order.
     template <typename Visit>
     void for_each_run(OctantIndex octant, Visit&& visit) const {
-        if (assembled_) {
-            visit(merged_.span().subspan(begins_[octant], entry_count(octant)));
-        } else {
-            memory_.lists.for_each_run(memory_.home_list(octant), visit);
-            memory_.lists.for_each_run(memory_.ghost_list(octant), visit);
-        }
+        memory_.lists.for_each_run(memory_.home_list(octant), visit);
+        memory_.lists.for_each_run(memory_.ghost_list(octant), visit);
     }
     /// Returns a copy of the entries of an octant, in order.
     std::vector<CellEntry> entries(OctantIndex octant) const;
@@ -118,8 +108,6 @@ private:
     OctreeLayout layout_;
     std::vector<std::uint64_t> begins_ = {0, 0};  // position of each octant's first entry, and the number of entries
     BuildMemory memory_{own_pages()};
-    Buffer<CellEntry> merged_;  // of assemble(), by octant
-    bool assembled_ = false;    // true if `merged_` has the entries, false if `memory_` has
     BuildSeconds seconds_;
 };
 

@@ -10,8 +10,8 @@ struct Sent {
     std::uint64_t bytes, messages;
 };
 
-RankCosts costs_of(double build, double merge, double scan, const Sent& sent) {
-    RankCosts costs;
+Costs costs_of(double build, double merge, double scan, const Sent& sent) {
+    Costs costs;
     costs.build = build;
     costs.merge = merge;
     costs.scan = scan;
@@ -25,12 +25,12 @@ Measured made(Arrangement arrangement, const EachRank& alone) {
     Measured measured;
     measured.setup = {"uniform", 1'000'000, unsigned(alone.size()), arrangement, 2};
     measured.alone = measured.together = alone;
-    for (RankCosts& costs : measured.together) {
+    for (Costs& costs : measured.together) {
         costs.build *= 2;
         costs.merge *= 2;
         costs.scan *= 2;
     }
-    for (RankCosts& costs : measured.alone) costs.bytes_sent = costs.messages_sent = 0;  // counted in `together`
+    for (Costs& costs : measured.alone) costs.bytes_sent = costs.messages_sent = 0;  // counted in `together`
     return measured;
 }
 

@@ -27,15 +27,15 @@ const int shared_hooks = [] {
 
 /// Returns a local engine for 1 thread, otherwise an engine with as many worker processes. So tests compare the octal
 /// order of both engines.
-test::EngineFor workers(Arrangement arrangement) {
+test::EngineFor workers() {
     std::shared_ptr<Engine> local = make_local_engine(2);
-    std::shared_ptr<Engine> two = make_process_engine({.workers = 2, .arrangement = arrangement});
-    std::shared_ptr<Engine> three = make_process_engine({.workers = 3, .arrangement = arrangement});
+    std::shared_ptr<Engine> two = make_process_engine(2);
+    std::shared_ptr<Engine> three = make_process_engine(3);
     return [=](unsigned threads) -> Engine& { return threads == 1 ? *local : threads == 2 ? *two : *three; };
 }
 
 TEST(LargeScenesOnWorkers, GiveEachPairOnce) {
-    const test::EngineFor engines = workers(Arrangement::shared);
+    const test::EngineFor engines = workers();
     test::Case long_tails;
     long_tails.first.boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
     for (test::Case a_case : {long_tails, test::cloth_case(test::scaled(120'000, 8), 1)}) {
@@ -64,15 +64,13 @@ protected:
 };
 
 TEST_F(SmallScenesOnWorkers, AreWhatBruteForceFinds) {
-    check(usual, workers(Arrangement::shared));
+    check(usual, workers());
     if (test::sanitized || seeds(usual).size() < usual) return;
     using enum Path;
     EXPECT_EQ(test::paths_not_taken({nested_once, nested_shared, large_octant, buffer_over, window, region_kept,
                                      region_copied, ring_wrapped, bucket_sorted, bucket_split}),
               "");
 }
-
-TEST_F(SmallScenesOnWorkers, InThePapersArrangement) { check(usual / 4, workers(Arrangement::paper)); }
 
 #endif
 

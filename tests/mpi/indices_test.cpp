@@ -139,10 +139,8 @@ TEST_F(RankIndices, AreRefusedOnAllRanks) {
     expect_refused(ErrorCode::bad_input, "object 1099511627781: ", indices);
 }
 
-TEST_F(RankIndices, NeedRanksThatShareTheWork) {
-    const auto master = make_mpi_engine(MPI_COMM_WORLD, {.arrangement = Arrangement::paper});
+TEST_F(RankIndices, NeedRanks) {
     std::vector<Pair64> found;
-    EXPECT_THROW((void)find_pairs64(*master, IndexedObjects{}, found), Error);
     EXPECT_THROW((void)find_pairs64(*local_, IndexedObjects{}, found), Error);
 }
 

@@ -23,7 +23,10 @@ public:
     explicit BackwardExecutor(unsigned width) : width_(width) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
-        for (std::size_t i = count; i-- > 0;) body(i);
+        for (std::size_t i = count; i-- > 0;) {
+            body(i);
+            body(i);
+        }
     }
     void for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) override {}
 
@@ -156,67 +159,6 @@ std::vector<std::string> kinds() {
     std::vector<std::string> names;
     for (const std::string_view kind : samples::scene_kinds()) names.emplace_back(kind);
     return names;
-}
-
-/// The sorted entries of some objects, and the positions where the entries of each octant begin.
-struct OwnedList {
-    std::vector<CellEntry> entries;
-    std::vector<std::uint64_t> home_begins, ghost_begins;
-};
-
-/// Returns the list of a block of objects, made by the steps of a worker in the paper's arrangement.
-OwnedList sorted_list(const EntrySource& source, const OctreeLayout& layout, ObjectBlock objects) {
-    BuildMemory memory(own_pages());
-    const std::size_t octants = layout.directory.octants().size();
-    memory.resize(source.size(), 1, octants, 1);
-    const std::stop_token stop;
-    const BuildSteps steps{source, layout.space, layout.directory, memory, stop};
-    // Runs the step twice: a repeated step must give the same result.
-    for (int i = 0; i < 2; ++i) steps.encode_and_scatter({0, objects});
-    OwnedList list;
-    list.entries.resize(std::size_t(entry_count(memory, 0)));
-    list.home_begins.resize(octants);
-    list.ghost_begins.resize(octants);
-    sort_block(memory, 0, {list.entries, list.home_begins, list.ghost_begins});
-    return list;
-}
-
-/// Merges the lists of a machine, like the first rank of the machine.
-OwnedList merged_list(std::span<const SortedList> lists) {
-    OwnedList merged;
-    std::size_t entries = 0;
-    for (const SortedList& list : lists) entries += list.entries.size();
-    merged.entries.resize(entries);
-    merged.home_begins.resize(lists[0].home_begins.size());
-    merged.ghost_begins.resize(lists[0].home_begins.size());
-    EXPECT_EQ(merge_lists(lists, {merged.entries, merged.home_begins, merged.ghost_begins}, {}), entries);
-    return merged;
-}
-
-TEST_P(Scene, MergedListsAreTheSameOctree) {
-    for (const std::size_t count : {1, 2, 5}) {
-        const OctreeLayout layout = make_layout(source_, {});
-        std::vector<OwnedList> owned;
-        std::vector<SortedList> lists;
-        lists.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const ObjectBlock objects{boxes_.size() * i / count, boxes_.size() * (i + 1) / count};
-            owned.push_back(sorted_list(source_, layout, objects));
-        }
-        for (const OwnedList& list : owned) lists.push_back({list.entries, list.home_begins, list.ghost_begins});
-        OwnedList last_two;
-        if (count == 5) {
-            last_two = merged_list(std::span(lists).last(2));
-            lists.resize(3);
-            lists.push_back({last_two.entries, last_two.home_begins, last_two.ghost_begins});
-        }
-        LinearOctree merged;
-        merged.assemble(layout, lists, {});
-        ASSERT_EQ(merged.entry_count(), octree_.entry_count());
-        for (OctantIndex octant = 0; octant < octree_.octants().size(); ++octant) {
-            ASSERT_TRUE(same_entries(octree_.entries(octant), merged.entries(octant)));
-        }
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Scene, ::testing::ValuesIn(kinds()), [](const auto& instance) {

@@ -119,8 +119,7 @@ TEST_F(Applications, MayBeInterruptedAllTheTime) {
 }
 
 TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
-    const auto engine = make_process_engine(3),
-               paper = make_process_engine({.workers = 3, .arrangement = Arrangement::paper});
+    const auto engine = make_process_engine(3);
     const auto message = [&](Engine& asked_engine, const Scene& scene, const Asked& asked) -> std::string {
         try {
             (void)test::ask(asked_engine, scene, asked);
@@ -144,7 +143,6 @@ TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
         SCOPED_TRACE(asked.describe());
         const std::string expected = message(*local_, bad, asked);
         EXPECT_EQ(message(*engine, bad, asked), expected);
-        EXPECT_EQ(message(*paper, bad, asked), expected);
         EXPECT_NE(expected, "no error");
     }
     expect_right(*engine, scene_, {});

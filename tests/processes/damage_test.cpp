@@ -69,8 +69,7 @@ TEST_P(Damaged, TablesEndNoApplication) {
         const std::uint64_t seed = test::test_seed(std::uint64_t(GetParam()) * 1000 + i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         ::setenv(test::damage_variable, std::to_string(seed).c_str(), 1);
-        const Arrangement arrangement = i % 5 == 4 ? Arrangement::paper : Arrangement::shared;
-        const auto engine = test::make_faulty_engine(3, arrangement);
+        const auto engine = test::make_faulty_engine(3);
         for (std::uint64_t call = 0; call < 4; ++call) expect_an_end(*engine, test::random_call(seed * 10 + call));
         ::unsetenv(test::damage_variable);
         for (const pid_t worker : test::children_of(::getpid())) (void)::kill(worker, SIGKILL);

@@ -86,9 +86,8 @@ void Processes::TearDown() {
     EXPECT_EQ(after.named_memory, before_.named_memory) << "shared memory is left";
 }
 
-std::unique_ptr<Engine> make_faulty_engine(unsigned workers, Arrangement arrangement) {
-    return make_process_engine(
-        {.workers = workers, .arrangement = arrangement, .worker_program = OCTOPAIR_FAULTY_WORKER});
+std::unique_ptr<Engine> make_faulty_engine(unsigned workers) {
+    return make_process_engine({.workers = workers, .worker_program = OCTOPAIR_FAULTY_WORKER});
 }
 
 std::uint64_t test_seed(std::uint64_t usual) {

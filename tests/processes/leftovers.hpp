@@ -49,7 +49,7 @@ private:
 };
 
 /// Makes an engine with faulty workers.
-std::unique_ptr<Engine> make_faulty_engine(unsigned workers, Arrangement arrangement = Arrangement::shared);
+std::unique_ptr<Engine> make_faulty_engine(unsigned workers);
 
 /// Returns `usual`, or OCTOPAIR_TEST_SEED if set, to replay a failure.
 std::uint64_t test_seed(std::uint64_t usual);

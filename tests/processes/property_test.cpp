@@ -22,15 +22,15 @@ using test::Case;
 class Engines {
 public:
     Engine& local() { return *local_; }
-    Engine& workers(unsigned count, Arrangement arrangement) {
-        std::unique_ptr<Engine>& engine = engines_[{count, arrangement}];
-        if (!engine) engine = make_process_engine({.workers = count, .arrangement = arrangement});
+    Engine& workers(unsigned count) {
+        std::unique_ptr<Engine>& engine = engines_[count];
+        if (!engine) engine = make_process_engine(count);
         return *engine;
     }
 
 private:
     std::unique_ptr<Engine> local_ = make_local_engine(2);
-    std::map<std::pair<unsigned, Arrangement>, std::unique_ptr<Engine>> engines_;
+    std::map<unsigned, std::unique_ptr<Engine>> engines_;
 };
 
 void check_case(Engines& engines, const Case& a_case, Engine& engine) {
@@ -52,11 +52,10 @@ TEST(WorkerProperty, AgreesWithThreads) {
         const auto kind = *rc::gen::elementOf(kinds);
         const auto seed = *rc::gen::arbitrary<std::uint32_t>();
         const auto workers = *rc::gen::inRange(1u, 5u);
-        const auto paper = *rc::gen::inRange(0, 5) == 0;
         for (std::uint64_t i = 0; i < test::scaled(8, 8); ++i) {
             const Case a_case = test::make_case(kind, seed + i);
             RC_LOG() << kind << ", seed " << seed + i << ": " << a_case.describe() << "\n";
-            check_case(engines, a_case, engines.workers(workers, paper ? Arrangement::paper : Arrangement::shared));
+            check_case(engines, a_case, engines.workers(workers));
         }
     });
     EXPECT_TRUE(held);
@@ -75,7 +74,7 @@ TEST(WorkerProperty, AgreesWithThreadsOnLargerScenes) {
         a_case.first.boxes = test::make_double_boxes(kind, 13'000, seed++);
         const AnyCall count{a_case, Order::octal, false, false};
         if (count.counted_by(engines.local()) > max_counted_pairs) continue;
-        Engine& engine = engines.workers(3, Arrangement::shared);
+        Engine& engine = engines.workers(3);
         for (const Order order : {Order::octal, Order::ascending}) {
             for (const bool streamed : {false, true}) {
                 const AnyCall call{a_case, order, streamed, false};

@@ -67,8 +67,7 @@ def server():
 def test_same_bytes_as_the_program(kind, dtype, tmp_path, server):
     boxes = op.generate(kind, 1500, 5).astype(dtype)
     np.save(tmp_path / "boxes.npy", boxes)
-    engines = [op.Engine(threads=1), op.Engine(threads=3), op.Engine("processes", workers=2), op.Engine(server),
-               op.Engine("processes", workers=2, arrangement="paper")]
+    engines = [op.Engine(threads=1), op.Engine(threads=3), op.Engine("processes", workers=2), op.Engine(server)]
     for options in ({}, {"order": "octal"}, {"margin": 0.01}, {"limit": 100}):
         arguments = [text for name, value in options.items() for text in (f"--{name}", str(value))]
         subprocess.run([program_path(), "detect", str(tmp_path / "boxes.npy"), "--output", str(tmp_path / "pairs.npy"), "--quiet",

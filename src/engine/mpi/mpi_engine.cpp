@@ -18,29 +18,9 @@ namespace octopair {
 
 namespace {
 
-/// Collective. Checks that all ranks have the same arrangement and machine size. Returns `options`. Throws: Error{usage}.
-const MpiOptions& check_arrangements_agree(Communicator& comm, const MpiOptions& options) {
-    struct Settings {
-        Arrangement arrangement;
-        unsigned ranks_per_machine;
-    };
-    const bool paper = options.arrangement == Arrangement::paper;
-    const std::vector<Settings> all =
-        comm.all_gather(Settings{options.arrangement, paper ? options.ranks_per_machine : 1});
-    for (const Settings& settings : all) {
-        if (settings.ranks_per_machine == 0)
-            throw Error(ErrorCode::usage, "ranks_per_machine is 0; it must be at least 1");
-        if (settings.arrangement != all[0].arrangement || settings.ranks_per_machine != all[0].ranks_per_machine) {
-            throw Error(ErrorCode::usage, "the ranks' engines differ in arrangement or ranks_per_machine");
-        }
-    }
-    return options;
-}
-
 class MpiEngine final : public Engine {
 public:
-    MpiEngine(MPI_Comm comm, const MpiOptions& options)
-        : comm_(comm), search_(comm_, check_arrangements_agree(comm_, options)) {}
+    MpiEngine(MPI_Comm comm, const MpiOptions& options) : comm_(comm), search_(comm_, options) {}
 
     void gather(PairList& pairs) {
         refuse_inside_call_of(this);

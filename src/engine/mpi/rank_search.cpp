@@ -21,9 +21,7 @@
 namespace octopair {
 
 RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::function<void()> on_poll)
-    : comm_(comm), on_poll_(std::move(on_poll)), passes_(options.threads) {
-    if (options.arrangement == Arrangement::paper) master_.emplace(comm_, costs_, options);
-}
+    : comm_(comm), on_poll_(std::move(on_poll)), passes_(options.threads) {}
 
 Summary RankSearch::run(const detail::Request& request, const detail::Output& output, const detail::Control& control,
                         Recipients recipients) {
@@ -91,7 +89,6 @@ void RankSearch::join(Task& task) {
     task.slices[0] = task.joint.slice(0, asked.first);
     if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
     if (task.indexed == nullptr) return;
-    if (master_) throw Error(ErrorCode::usage, "find_pairs64 does not support the paper's arrangement");
     for (unsigned set = 0; set < task.sets(); ++set) {
         task.order.take(task.joint, set, task.slices[set], task.indexed->indices[set]);
         task.slices[set] = task.order.objects(set);
@@ -106,7 +103,6 @@ void RankSearch::find(Task& task) {
     const detail::Request& asked = task.request;
     join(task);
     costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
-    if (master_) return find_at_master(task);
     const Objects& first = task.slices[0];
     const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
     const BoxSource own(first, second, task.joint.form);
@@ -117,15 +113,6 @@ void RankSearch::find(Task& task) {
     passes_.set_share(plan_and_route(task, own), task.stops);
     const Objects first_received = received(0), second_received = received(1);
     search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
-}
-
-void RankSearch::find_at_master(Task& task) {
-    const Summary summary = master_->run({task.output, task.request.options, task.joint, task.slices, task.stops,
-                                          task.stop.get_token(), task.progress_sink});
-    task.summary.pairs = summary.pairs;
-    task.summary.truncated = summary.truncated;
-    task.summary.entries = summary.entries;
-    task.summary.steps = summary.steps;
 }
 
 void RankSearch::search(Task& task, const detail::Request& own_octants) {

@@ -23,7 +23,6 @@
 #include <vector>
 
 #include "engine/mpi/comm/communicator.hpp"
-#include "engine/mpi/paper/master_search.hpp"
 #include "engine/mpi/partition/object_exchange.hpp"
 #include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
@@ -77,7 +76,6 @@ private:
     void gather_pieces(PairList& piece, detail::PairStorage& all);
     void find(Task& task);
     void join(Task& task);
-    void find_at_master(Task& task);
     RankShare plan_alone(Task& task, const BoxSource& own);
     RankShare plan_and_route(Task& task, const BoxSource& own);
     OctantOwners route(Task& task, const BoxSource& own, const OctreePlanning& planning);
@@ -103,7 +101,6 @@ private:
     Routing::Memory routing_;
     PairList found_;
     RankCosts costs_;
-    std::optional<MasterSearch> master_;  // only with Arrangement::paper
 };
 
 }  // namespace octopair

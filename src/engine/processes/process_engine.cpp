@@ -9,7 +9,6 @@
 #include "engine/processes/client/process_passes.hpp"
 #include "engine/processes/client/worker_pool.hpp"
 #include "engine/processes/client/worker_program.hpp"
-#include "engine/processes/paper/paper_passes.hpp"
 #include "engine/search.hpp"
 #include "engine/ticket_lock.hpp"
 #include "octopair/error.hpp"
@@ -26,17 +25,12 @@ unsigned worker_count(unsigned requested) {
     return requested > 0 ? requested : std::min(available_cores(), max_workers);
 }
 
-std::unique_ptr<Passes> make_passes(Arrangement arrangement, WorkerPool& pool, const SharedArrays& arrays) {
-    if (arrangement == Arrangement::paper) return std::make_unique<PaperPasses>(pool, arrays);
-    return std::make_unique<ProcessPasses>(pool, arrays);
-}
-
 class ProcessEngine final : public Engine {
 public:
     ProcessEngine(const ProcessOptions& options, const std::string& packaged_worker)
         : pool_(find_worker_program(options.worker_program, packaged_worker), worker_count(options.workers)),
-          passes_(make_passes(options.arrangement, pool_, *arrays_)),
-          search_(*passes_) {}
+          passes_(pool_, *arrays_),
+          search_(passes_) {}
 
     WorkerFaults faults() const { return pool_.faults(); }
 
@@ -47,12 +41,12 @@ private:
     }
     std::shared_ptr<void> allocate(std::size_t bytes) override { return SharedArrays::allocate(arrays_, bytes); }
     detail::JobQueue& jobs() override { return jobs_; }
-    unsigned verification_threads() const override { return passes_->width(); }
+    unsigned verification_threads() const override { return passes_.width(); }
 
     TicketLock ticket_lock_;
     std::shared_ptr<SharedArrays> arrays_ = std::make_shared<SharedArrays>();
     WorkerPool pool_;
-    std::unique_ptr<Passes> passes_;
+    ProcessPasses passes_;
     Search search_;
     detail::JobQueue jobs_{*this};  // last member, so it is destroyed first
 };

@@ -33,13 +33,13 @@ namespace octopair {
 
 inline constexpr unsigned max_workers = 256;
 inline constexpr std::uint64_t control_mark = 0x6f63746f70616972;  // "octopair"
-inline constexpr std::uint32_t layout_version = 6;                 // raised with every change of the layout
+inline constexpr std::uint32_t layout_version = 7;                 // raised with every change of the layout
 
 /// Step of the algorithm that a share belongs to. `encode` is encode and scatter; `order` sorts pairs into ascending order.
 enum class Step : std::uint32_t { prepare, encode, count, scan, order };
 inline constexpr std::array<const char*, 5> step_names = {"prepare", "encode", "count", "scan", "order"};
 
-enum class PassKind : std::uint32_t { lists, count, count_by_object, list_octal, stream_octal, list_ascending };
+enum class PassKind : std::uint32_t { count, count_by_object, list_octal, stream_octal, list_ascending };
 
 /// An array in a region: `count` elements from byte `offset` on. Empty if `count` is 0; then the region is unused.
 struct ArrayRef {

@@ -10,7 +10,6 @@
 #include "base/test_hooks.hpp"
 #include "base/timed.hpp"
 #include "base/tuning.hpp"
-#include "engine/processes/paper/sorted_lists.hpp"
 #include "engine/processes/worker/shared_buckets.hpp"
 #include "octopair/error.hpp"
 #include "octree/scan.hpp"
@@ -207,12 +206,8 @@ void WorkerProgram::run(const Pass& pass, const WorkSharing::Self& self, std::st
 
 Outcome WorkerProgram::take_part(const Context& context) {
     if (job_ == nullptr || job_->number != context.pass.job) start_job(context.pass);
-    if (context.pass.kind == PassKind::lists) {
-        make_lists(context);
-    } else {
-        build(context);
-        scan(context);
-    }
+    build(context);
+    scan(context);
     context.slot.shares = context.shares.shares();
     return Outcome::done;
 }
@@ -238,18 +233,6 @@ void WorkerProgram::build(const Context& context) {
     context.slot.scatter_seconds = job_->octree.seconds().scatter;
 }
 
-void WorkerProgram::make_lists(const Context& context) {
-    job_->arena.rewind(0);
-    const ObservedSource source(job_->source, context.shares.observer());
-    SortedLists lists(source, job_->arena, context.pass.workers, context.stop);
-    context.slot.encode_seconds = 0;
-    const Timed timed(context.slot.encode_seconds);
-    context.shares.run(Step::encode, context.pass.workers, [&](const WorkSharing::Task& task) {
-        lists.make(std::size_t(task.index), context.stop);
-        task.record.first_run = job_->arena.offset(lists.head(std::size_t(task.index)));
-    });
-}
-
 void WorkerProgram::scan(const Context& context) {
     job_->arena.rewind(job_->built_mark);
     const Pass& pass = context.pass;
@@ -271,8 +254,6 @@ void WorkerProgram::scan(const Context& context) {
             scan_into(context, buckets);
             return buckets.order(context.shares);
         }
-        case PassKind::lists:
-            break;
     }
     throw Error(ErrorCode::engine_failed, "control block: the kind of the pass is unknown");
 }

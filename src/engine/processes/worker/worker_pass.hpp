@@ -40,7 +40,6 @@ private:
     Outcome take_part(const Context& context);
     void start_job(const Pass& pass);
     void build(const Context& context);
-    void make_lists(const Context& context);
     void scan(const Context& context);
     void scan_into(const Context& context, ShareOutput& output);
     void count_by_object(const Context& context);
