@@ -28,7 +28,7 @@ double leaving(const Setup& setup) {
     return double(setup.ranks - setup.ranks_per_machine) / double(setup.ranks - 1);
 }
 
-/// Returns the bytes through the busiest port. In the paper's arrangement both directions of the master's port add up,
+/// Returns the bytes through the busiest port. With the paper's algorithm both directions of the master's port add up,
 /// because ranks send lists only after they have received their objects.
 double port_bytes(const Measured& measured) {
     const EachRank& ranks = measured.together;
@@ -67,7 +67,7 @@ public:
         const std::string times =
             fmt::format("{:>13}{:>8}{:>11}{:>12}{:>8}", "computing", "eff.", "network", "run time", "eff.");
         std::string text = heading() + fmt::format("{:>10}{:>22}{:>52}{:>52}\n", "", "as published",
-                                                   "the paper's arrangement here", "octopair");
+                                                   "the paper's algorithm here", "octopair");
         text += fmt::format("{:>10}{:>14}{:>8}{}{}", "processors", "run time", "eff.", times, times);
         for (const unsigned ranks : processors()) {
             text += fmt::format("\n{:>10}", ranks) + published_cells(ranks) + cells(Arrangement::paper, ranks) +
@@ -131,7 +131,7 @@ private:
     const Network& network_;
 };
 
-/// Formats the components of the paper's arrangement next to the paper's figures. Uses the run with most ranks and,
+/// Formats the components of the paper's algorithm next to the paper's figures. Uses the run with most ranks and,
 /// among equals, most objects.
 std::string components_text(const std::vector<Measured>& all, const Network& network) {
     const Measured* most = nullptr;

@@ -1,5 +1,5 @@
 // The paper's cluster, measured again: tables 1 and 2 and the component times with several processors on each machine.
-// Covers the paper's arrangement of ranks and octopair's.
+// Covers the paper's algorithm and octopair's.
 //
 // Computing is measured on one machine, for each rank of many. The network time is a model:
 // - Every machine has one port, with a bandwidth in each direction.
@@ -33,10 +33,10 @@ struct Modelled {
 Modelled modelled(const Measured& measured, const Network& network);
 
 /// Returns the seconds of computing from the beginning to the end of a call. If ranks share every step: the seconds of
-/// the slowest rank. In the paper's arrangement, each step begins after the step before, and takes the time of its
+/// the slowest rank. In the paper's algorithm, each step begins after the step before, and takes the time of its
 /// slowest rank. The master merges after the machines.
 double critical_path(const Measured& measured);
-/// Returns the seconds of merging in the paper's arrangement: at the master, or on the slowest of the other machines.
+/// Returns the seconds of merging in the paper's algorithm: at the master, or on the slowest of the other machines.
 double merged_at_master(const EachRank& ranks);
 double merged_on_machines(const EachRank& ranks);
 

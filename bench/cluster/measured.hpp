@@ -34,7 +34,7 @@ std::string_view arrangement_name(Arrangement arrangement);
 /// Returns the arrangement with this name. Throws: Error{usage} if no arrangement has this name.
 Arrangement arrangement_of(std::string_view name);
 
-/// Costs of a call on a rank. Only the paper's arrangement merges.
+/// Costs of a call on a rank. Only the paper's algorithm merges.
 struct Costs : RankCosts {
     double merge = 0;  ///< seconds of merging sorted lists
 };
