@@ -31,8 +31,8 @@ std::vector<Box3f> make_slice(const Setup& setup, std::uint64_t begin, std::uint
     return own;
 }
 
-template <typename Number, typename Of>
-Number median(const std::vector<Of>& runs, Number Of::*member) {
+template <typename Of, typename Number, typename Class>
+Number median(const std::vector<Of>& runs, Number Class::*member) {
     std::vector<Number> numbers;
     numbers.reserve(runs.size());
     for (const Of& run : runs) numbers.push_back(run.*member);

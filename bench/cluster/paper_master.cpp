@@ -52,9 +52,9 @@ private:
     MPI_Datatype type_ = MPI_DATATYPE_NULL;
 };
 
-std::vector<int> begins_of(const std::vector<int>& counts) {
-    std::vector<int> begins(counts.size(), 0);
-    std::partial_sum(counts.begin(), counts.end() - 1, begins.begin() + 1);
+std::vector<int> begins_of(const std::vector<int>& lengths) {
+    std::vector<int> begins(lengths.size(), 0);
+    std::partial_sum(lengths.begin(), lengths.end() - 1, begins.begin() + 1);
     return begins;
 }
 
@@ -64,16 +64,16 @@ std::vector<PaperList> gather_lists(MPI_Comm comm, const PaperList& own) {
     MPI_Comm_rank(comm, &rank);
     MPI_Comm_size(comm, &size);
     const int count = int(own.size());
-    std::vector<int> counts(std::size_t(size), 0);
-    MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
-    PaperList all(std::size_t(std::accumulate(counts.begin(), counts.end(), 0)));
-    const std::vector<int> begins = begins_of(counts);
+    std::vector<int> lengths(std::size_t(size), 0);
+    MPI_Gather(&count, 1, MPI_INT, lengths.data(), 1, MPI_INT, 0, comm);
+    PaperList all(std::size_t(std::accumulate(lengths.begin(), lengths.end(), 0)));
+    const std::vector<int> begins = begins_of(lengths);
     const Datatype<PaperEntry> type;
-    MPI_Gatherv(own.data(), count, type.get(), all.data(), counts.data(), begins.data(), type.get(), 0, comm);
+    MPI_Gatherv(own.data(), count, type.get(), all.data(), lengths.data(), begins.data(), type.get(), 0, comm);
     std::vector<PaperList> lists;
-    for (std::size_t i = 0; rank == 0 && i < counts.size(); ++i) {
+    for (std::size_t i = 0; rank == 0 && i < lengths.size(); ++i) {
         const auto first = all.begin() + begins[i];
-        lists.emplace_back(first, first + counts[i]);
+        lists.emplace_back(first, first + lengths[i]);
     }
     return lists;
 }
@@ -143,16 +143,16 @@ void PaperMaster::deal_out() {
     std::uint64_t objects = boxes_.size();
     MPI_Bcast(&objects, 1, MPI_UINT64_T, 0, comm_);
     MPI_Bcast(&octree_, int(sizeof octree_), MPI_BYTE, 0, comm_);
-    std::vector<int> counts;
+    std::vector<int> lengths;
     for (std::uint64_t rank = 0; rank < std::uint64_t(size_); ++rank) {
-        counts.push_back(int(objects * (rank + 1) / std::uint64_t(size_) - objects * rank / std::uint64_t(size_)));
+        lengths.push_back(int(objects * (rank + 1) / std::uint64_t(size_) - objects * rank / std::uint64_t(size_)));
     }
-    const std::vector<int> begins = begins_of(counts);
+    const std::vector<int> begins = begins_of(lengths);
     const Datatype<Box3f> type;
     const std::size_t own = std::size_t(rank_);
-    own_.resize(std::size_t(counts[own]));
+    own_.resize(std::size_t(lengths[own]));
     first_index_ = std::uint32_t(begins[own]);
-    MPI_Scatterv(boxes_.data(), counts.data(), begins.data(), type.get(), own_.data(), counts[own], type.get(), 0,
+    MPI_Scatterv(boxes_.data(), lengths.data(), begins.data(), type.get(), own_.data(), lengths[own], type.get(), 0,
                  comm_);
     if (is_master()) {
         costs_.bytes_sent = (objects - own_.size()) * sizeof(Box3f);
