@@ -15,6 +15,7 @@
 #include "io/formats/format_table.hpp"
 #include "io/formats/format_version.hpp"
 #include "io/json/json_fields.hpp"
+#include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
 #endif
@@ -187,6 +188,7 @@ std::string describe_files(const std::vector<std::string>& paths, const std::sto
 #ifdef OCTOPAIR_WITH_PIPELINE
         make_shaped(file.set, {}, stop);
 #endif
+        if (const auto fault = file.set.find_fault()) throw Error(ErrorCode::bad_input, fault->message);
         if (!text.empty()) text += '\n';
         text += describe(file);
     }

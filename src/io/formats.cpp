@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -137,6 +138,8 @@ void refuse_without_mark(const std::string& path, std::string_view ending, const
 KnownFormat known_format(const std::string& path) { return known_by_head(path, head_of(path)); }
 
 void check_readable(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) refuse(path, "is a directory; give the name of a file in it");
     const std::optional<FileHead> head = head_of(path);
     if (!head) return;
     const KnownFormat known = known_by_head(path, head);

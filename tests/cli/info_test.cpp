@@ -1,4 +1,6 @@
 // Tests `octopair info FILE`, and the messages about files that are not what they seem.
+#include <cmath>
+
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -49,6 +51,20 @@ TEST_F(Info, RefusesWhatCannotBeRead) {
     EXPECT_EQ(pointer.out, "");
     EXPECT_EQ(pointer.err, "octopair: a.npy: is a Git LFS pointer, not the file itself; run `git lfs pull`\n");
     EXPECT_EQ(run("info missing.npy").status, 4);
+}
+
+TEST_F(Info, RefusesWrongBoxesAsDetectDoes) {
+    write_file(file("a.npy"), npy_of(io::NpyType::float64, {2, 6}, std::vector<double>{0, 0, 0, 1, 1, 1, 0, 3, 0, 1, 2, 1}));
+    write_file(file("nan.npy"), npy_of(io::NpyType::float32, {1, 6}, std::vector<float>{0, NAN, 0, 1, 1, 1}));
+    write_file(file("a.csv"), "0,0,0,1,1,1\n0,0,5,1,1,1\n");
+    write_file(file("moving.npy"), npy_of(io::NpyType::float32, {2, 1, 6}, std::vector<float>{0, 0, 0, 1, 1, 1, 2, 0, 0, 1, 1, 1}));
+    for (const std::string name : {"a.npy", "nan.npy", "a.csv", "moving.npy"}) {
+        const Outcome info = run("info " + name), detect = run("detect " + name + " --quiet");
+        EXPECT_EQ(info.status, 3) << name;
+        EXPECT_EQ(info.out, "") << name;
+        EXPECT_EQ(info.err, detect.err) << name;
+    }
+    EXPECT_EQ(run("info a.npy").err, "octopair: a.npy: object 1: min y 3 is above max y 2\n");
 }
 
 TEST_F(Info, RulesAndBaselinesMayBeWrappedToo) {

@@ -1,104 +1,132 @@
-// Tests which parts of a DXF file are found to be read wrongly, or not at all.
-#include "io/meshes/dxf_content.hpp"
-
+// Tests that DXF files are read as the format says, wherever Assimp alone reads them wrongly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "io/meshes/mesh_reader.hpp"
-#include "io/temporary.hpp"
+#include "io/imported_scene.hpp"
 
 namespace octopair::test {
 namespace {
 
+using Texts = std::vector<std::string>;
+
+/// A triangle with the corners 0 0 0, 1 0 0 and 0 2 4.
 const std::string one_face =
-    "0\n3DFACE\n8\n0\n10\n0\n20\n0\n30\n0\n11\n1\n21\n0\n31\n0\n12\n0\n22\n2\n32\n4\n13\n0\n23\n2\n33\n4\n";
+    "0\n3DFACE\n8\nL\n10\n0\n20\n0\n30\n0\n11\n1\n21\n0\n31\n0\n12\n0\n22\n2\n32\n4\n13\n0\n23\n2\n33\n4\n";
 
 std::string dxf_section(const std::string& name, const std::string& content) {
     return "0\nSECTION\n2\n" + name + "\n" + content + "0\nENDSEC\n";
 }
 
-/// A file with a block A, whose base is `base` on each axis, and an insert of A at 10, 20, 30 with further groups.
-std::string dxf_with_insert(const std::string& groups, const std::string& content = one_face,
-                            const std::string& base = "0") {
-    const std::string block = "0\nBLOCK\n8\n0\n2\nA\n70\n0\n10\n" + base + "\n20\n" + base + "\n30\n" + base + "\n" +
-                              content + "0\nENDBLK\n8\n0\n";
-    return dxf_section("BLOCKS", block) +
-           dxf_section("ENTITIES", "0\nINSERT\n8\n0\n2\nA\n10\n10\n20\n20\n30\n30\n" + groups) + "0\nEOF\n";
+std::string dxf_block(const std::string& name, const std::string& content, const std::string& base = "0") {
+    return "0\nBLOCK\n8\n0\n2\n" + name + "\n70\n0\n10\n" + base + "\n20\n" + base + "\n30\n" + base + "\n" + content +
+           "0\nENDBLK\n8\n0\n";
 }
 
-std::string wrong_in(const std::string& text) { return io::find_dxf_faults(text).wrong; }
-std::vector<std::string> lost_in(const std::string& text) { return io::find_dxf_faults(text).lost; }
+std::string dxf_insert(const std::string& block, const std::string& groups) { return "0\nINSERT\n8\nL\n2\n" + block + "\n" + groups; }
 
-TEST(DxfContent, InsertsThatAssimpPlacesRightlyAreAccepted) {
-    for (const std::string groups :
-         {"", "41\n1\n42\n1\n43\n1\n50\n0\n", "50\n360.0\n", "70\n1\n71\n1\n", "210\n0\n220\n0\n230\n1\n"})
-        EXPECT_EQ(wrong_in(dxf_with_insert(groups)), "") << groups;
-    EXPECT_EQ(wrong_in(dxf_with_insert("", one_face, "1")), "");
-    EXPECT_EQ(wrong_in(dxf_with_insert("10\n0\n20\n0\n30\n0\n41\n2\n42\n3\n43\n5\n")), "") << "a scale at the origin";
-    const std::string line = "0\nCIRCLE\n40\n2\n";
-    EXPECT_EQ(wrong_in(dxf_with_insert("50\n90\n", line)), "") << "a block without anything that is read";
+ImportedScene read_dxf(const std::string& entities, const std::string& blocks = "") {
+    return import_text(".dxf", dxf_section("BLOCKS", blocks) + dxf_section("ENTITIES", entities) + "0\nEOF\n");
 }
 
-TEST(DxfContent, InsertsThatAssimpPlacesWronglyAreFound) {
-    for (const std::string groups :
-         {"41\n2\n", "43\n-1\n", "50\n90\n", "70\n3\n", "71\n2\n", "210\n0\n220\n0\n230\n-1\n"})
-        EXPECT_NE(wrong_in(dxf_with_insert(groups)), "") << groups;
-    EXPECT_NE(wrong_in(dxf_with_insert("", one_face + "0\nCIRCLE\n10\n5\n20\n0\n30\n0\n40\n2\n")), "")
-        << "Assimp takes the middle of the circle for the base of the block";
-    EXPECT_EQ(wrong_in(dxf_with_insert("50\n90\n")).substr(0, 8), "line 57:");
+std::string box_in_dxf(const std::string& entities, const std::string& blocks = "") {
+    return boxes_named(read_dxf(entities, blocks), "<DXF_ROOT>").at(0);
 }
 
-TEST(DxfContent, NumbersAndLineEndsOfAllSpellingsAreUnderstood) {
-    for (const std::string groups : {"50\n+90\n", "70\n+3\n", "41\n1,5\n", "10\n+20.0\n41\n2\n"})
-        EXPECT_NE(wrong_in(dxf_with_insert(groups)), "") << groups;
-    EXPECT_EQ(wrong_in(dxf_with_insert("41\n+1\n50\n+0\n")), "");
-    std::string text = dxf_with_insert("50\n90\n");
+const std::string at_10_20_30 = "10\n10\n20\n20\n30\n30\n";
+
+/// Returns the box of a block with one face that is inserted at 10 20 30.
+std::string inserted(const std::string& groups, const std::string& base = "0") {
+    return box_in_dxf(dxf_insert("A", at_10_20_30 + groups), dxf_block("A", one_face, base));
+}
+
+TEST(DxfContent, BlocksAreInserted) {
+    EXPECT_EQ(inserted(""), "10 20 30 11 22 34");
+    EXPECT_EQ(inserted("41\n+1\n50\n360.0\n70\n1\n71\n1\n210\n0\n220\n0\n230\n1\n"), "10 20 30 11 22 34");
+    EXPECT_EQ(inserted("", "1"), "9 19 29 10 21 33") << "a base";
+    EXPECT_EQ(inserted("41\n2\n42\n3\n43\n-1\n", "1"), "8 17 27 10 23 31") << "a base and scales";
+    EXPECT_EQ(inserted("50\n90\n"), "8 20 30 10 21 34") << "a quarter turn";
+    EXPECT_EQ(inserted("50\n+90\n41\n1,5\n"), "8 20 30 10 21.5 34") << "a sign, and a comma as decimal point";
+    EXPECT_EQ(inserted("70\n3\n44\n5\n71\n2\n45\n7\n"), "10 20 30 21 29 34") << "columns and rows";
+    EXPECT_EQ(inserted("210\n0\n220\n0\n230\n-1\n"), "-11 20 -34 -10 22 -30") << "a direction of extrusion";
+}
+
+TEST(DxfContent, BlocksInBlocksAreInserted) {
+    const std::string blocks = dxf_block("A", one_face) + dxf_block("B", dxf_insert("A", "10\n1\n50\n90\n") + "0\nCIRCLE\n10\n5\n40\n2\n" + one_face);
+    EXPECT_EQ(box_in_dxf(dxf_insert("B", at_10_20_30), blocks), "9 20 30 11 22 34");
+    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("BLOCKS", dxf_block("A", dxf_insert("A", "10\n0\n"))) +
+                                          dxf_section("ENTITIES", dxf_insert("A", "10\n0\n"))),
+              "line 22: the block 'A' is inserted in itself");
+}
+
+TEST(DxfContent, AllLineEndsAreUnderstood) {
+    std::string text = dxf_section("ENTITIES", one_face) + "0\nEOF\n";
     std::replace(text.begin(), text.end(), '\n', '\r');
-    EXPECT_NE(wrong_in(text), "");
-    EXPECT_EQ(lost_in(dxf_section("ENTITIES", "0\nINSERT\n2\na\n")).size(), 1u) << "a block that is missing";
+    EXPECT_EQ(boxes_named(import_text(".dxf", text), "<DXF_ROOT>"), Texts{"0 0 0 1 2 4"});
+}
+
+TEST(DxfContent, PolylinesAreRead) {
+    const auto vertex = [](int x, int y, int z, const std::string& groups = "") {
+        return fmt::format("0\nVERTEX\n8\nL\n10\n{}\n20\n{}\n30\n{}\n{}", x, y, z, groups);
+    };
+    const std::string three = vertex(0, 0, 0) + vertex(5, 0, 0) + vertex(5, 7, 0) + "0\nSEQEND\n";
+    EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nL\n70\n8\n" + three), "0 0 0 5 7 0") << "the last vertex of three";
+    EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nL\n70\n0\n210\n0\n220\n0\n230\n-1\n" + three), "-5 0 0 0 7 0");
+    EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nL\n70\n0\n39\n2.5\n" + three), "0 0 0 5 7 2.5") << "a thickness";
+    EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nM\n70\n0\n0\nSEQEND\n" + one_face), "0 0 0 1 2 4") << "no vertex";
+    const std::string grid = "0\nPOLYLINE\n8\nL\n70\n16\n71\n2\n72\n2\n" + vertex(0, 0, 0) + vertex(1, 0, 0) + vertex(0, 2, 0) +
+                             vertex(1, 2, 3) + "0\nSEQEND\n";
+    EXPECT_EQ(box_in_dxf(grid), "0 0 0 1 2 3");
+    const std::string corners = vertex(0, 0, 0, "70\n192\n") + vertex(1, 0, 0, "70\n192\n") + vertex(0, 2, 4, "70\n192\n");
+    const auto mesh = [&](int last) {
+        return "0\nPOLYLINE\n8\nL\n70\n64\n71\n3\n72\n1\n" + corners +
+               fmt::format("0\nVERTEX\n8\nL\n10\n0\n70\n128\n71\n1\n72\n-2\n73\n{}\n0\nSEQEND\n", last);
+    };
+    EXPECT_EQ(box_in_dxf(mesh(3)), "0 0 0 1 2 4") << "a corner after an invisible edge";
+    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("ENTITIES", mesh(4))), "line 50: a face refers to vertex 4, but the mesh has 3 vertices");
+}
+
+TEST(DxfContent, TextsWithBracesDoNotSwallowTheModel) {
+    EXPECT_EQ(box_in_dxf("0\nMTEXT\n1\n{\\fArial;text\n" + one_face), "0 0 0 1 2 4");
+    EXPECT_EQ(box_in_dxf("0\nCIRCLE\n102\n{ACAD_REACTORS\n330\n1\n102\n}\n" + one_face), "0 0 0 1 2 4");
+}
+
+TEST(DxfContent, ThePaperIsLeftOut) {
+    std::string on_paper = one_face;
+    on_paper.replace(on_paper.find("8\nL\n"), 4, "67\n1\n8\nP\n");
+    const ImportedScene scene = read_dxf(on_paper + one_face + dxf_insert("A", "67\n1\n10\n50\n"), dxf_block("A", one_face));
+    EXPECT_EQ(scene.objects.size(), 1u);
+    EXPECT_EQ(scene.not_read, Texts{"entities of the paper space (2)"});
 }
 
 TEST(DxfContent, WhatIsLostIsCounted) {
-    EXPECT_TRUE(lost_in(dxf_with_insert("")).empty());
+    EXPECT_TRUE(read_dxf(one_face).not_read.empty());
     const std::string solids = "0\n3DSOLID\n8\n0\n0\n3DSOLID\n8\n0\n0\nMESH\n8\n0\n";
-    EXPECT_EQ(lost_in(dxf_section("ENTITIES", one_face + solids)),
-              (std::vector<std::string>{"entities of type 3DSOLID (2)", "entities of type MESH (1)"}));
-    EXPECT_EQ(lost_in(dxf_with_insert("", "0\nINSERT\n2\nB\n" + one_face)),
-              std::vector<std::string>{"entities of block 'A' (2)"});
-    EXPECT_EQ(lost_in(dxf_with_insert("", one_face + "0\nATTDEF\n2\nTAG\n")),
-              std::vector<std::string>{"inserts of block 'A' (1)"});
-    EXPECT_EQ(lost_in(dxf_section("ENTITIES", "0\nPOLYLINE\n70\n16\n")),
-              std::vector<std::string>{"meshes of M x N points (POLYLINE) (1)"});
-    EXPECT_EQ(lost_in(dxf_section("ENTITIES", "0\nVERTEX\n70\n128\n71\n1\n72\n-2\n73\n3\n")),
-              std::vector<std::string>{"corners of polyface meshes, after invisible edges (1)"});
+    const ImportedScene scene = read_dxf(one_face + solids + dxf_insert("none", "10\n0\n"));
+    EXPECT_EQ(scene.not_read, (Texts{"entities of type 3DSOLID (2)", "entities of type MESH (1)",
+                                     "inserts of block 'none', which the file does not have (1)"}));
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find(": Assimp does not read entities of type 3DSOLID (2), "), std::string::npos);
+    EXPECT_EQ(import_text(".dxf", dxf_section("ENTITIES", one_face)).not_read,
+              Texts{"what may follow the last section: the file has no EOF (1)"});
 }
 
-TEST(DxfContent, AnyTextIsAccepted) {
-    for (const std::string text :
-         {"", "\n", "0", "0\nSECTION\n2\nBLOCKS\n10\n1\n", "0\nSECTION\n2\nENTITIES\n0\nINSERT", "x\ny\nz\n"}) {
-        EXPECT_EQ(wrong_in(text), "") << text;
-    }
+TEST(DxfContent, FaultsAreRefused) {
+    EXPECT_EQ(refusal_of_text(".dxf", "0\nSECTION\n2\nENTITIES\n" + one_face),
+              "is cut: the section ENTITIES has no ENDSEC; export the file again");
+    std::string wrong = one_face;
+    wrong.replace(wrong.find("10\n0\n"), 5, "10\nx\n");
+    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("ENTITIES", wrong)), "line 6: 3DFACE has 'x' as group 10, which is no number");
+    for (const std::string text : {"\n", "0", "0\nSECTION\n2\nBLOCKS\n10\n1\n", "0\nSECTION\n2\nENTITIES\n0\nINSERT", "x\ny\nz\n"})
+        EXPECT_NE(refusal_of_text(".dxf", text), "") << text;
 }
 
-TEST(DxfContent, TheReaderRefusesOrWarns) {
-    const TemporaryDirectory directory;
-    const std::string path = directory.file("a.dxf");
-    write_file(path, dxf_with_insert("41\n2\n"));
-    EXPECT_EQ(
-        error_of(ErrorCode::bad_input, [&] { (void)io::read_mesh_scene(path, {io::MeshObjects::node}); }),
-        path +
-            ": line 57: the block 'A' is inserted with a scale, a rotation, a base or copies, which Assimp places "
-            "wrongly; explode the blocks (EXPLODE), or export glTF, OBJ or STL");
-    write_file(path, dxf_section("ENTITIES", one_face + "0\n3DSOLID\n8\n0\n") + "0\nEOF\n");
-    const io::LoadedScene scene = io::read_mesh_scene(path, {io::MeshObjects::node});
-    ASSERT_EQ(scene.warnings.size(), 2u);
-    EXPECT_EQ(scene.warnings[1],
-              path + ": Assimp does not read entities of type 3DSOLID (1); export the model as glTF, OBJ or STL");
-    const auto& boxes = std::get<Buffer<Box3d>>(scene.boxes);
-    ASSERT_EQ(boxes.size(), 1u);
-    EXPECT_EQ(boxes[0].max[1], 2);
-    EXPECT_EQ(boxes[0].max[2], 4) << "z of the file stays z";
+TEST(DxfContent, LayersAreObjects) {
+    std::string other = one_face;
+    other.replace(other.find("8\nL\n"), 4, "8\n{M\n");
+    const ImportedScene scene = read_dxf(one_face + other + one_face);
+    EXPECT_EQ(boxes_named(scene, "L"), Texts{"0 0 0 1 2 4"});
+    EXPECT_EQ(boxes_named(scene, "(M"), Texts{"0 0 0 1 2 4"});
 }
 
 }  // namespace

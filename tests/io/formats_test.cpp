@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "io/formats/content_marks.hpp"
 #include "io/formats/format_table.hpp"
 #include "io/scene_reader.hpp"
@@ -236,6 +238,53 @@ TEST_F(Formats, TextWithoutTheMarkOfItsFormatIsRefused) {
     EXPECT_NE(refusal("a.ifczip", "PK\x03\x04").find("unpack"), std::string::npos);
 }
 #endif
+
+TEST_F(Formats, ContentThatIsNoModelIsNamed) {
+    const std::string to_do = "give octopair a model, or boxes as .npy or .csv";
+    const std::map<std::string, std::string> foreign = {
+        {"<?xml version='1.0'?>\n<!-- a -->\n<!DOCTYPE html PUBLIC 'x'>\n<html xmlns='h'>\n", "is an HTML page, not a model; download the file itself"},
+        {"\x5d\0\0\x80\0"s + std::string(8, '\xff') + "\0a", "is compressed with LZMA; unpack it first, for example with `xz --format=lzma -dc`"},
+        {"LZIP\x01a", "is compressed with lzip; unpack it first, for example with `lzip -dc`"},
+        {"\x1f\x9d\x90", "is compressed with compress; unpack it first, for example with `gzip -dc`"},
+        {"\x7f\x45LF\x02", "is a program (ELF), not a model; " + to_do},
+        {"MZ"s + std::string(58, '\0') + "\x40\0\0\0PE\0\0"s, "is a program (Windows), not a model; " + to_do},
+        {"SQLite format 3\0"s, "is a database (SQLite), not a model; export the model from the program that wrote it"},
+        {"{\\rtf1\\ansi", "is a document (RTF), not a model; save it as plain text"},
+        {"GIF89a", "is a picture (GIF), not a model; " + to_do},
+        {"BM\x0e\0\0\0"s + std::string(8, '\0'), "is a picture (BMP), not a model; " + to_do},
+        {"RIFFxxxxWEBP", "is a picture (WebP), not a model; " + to_do},
+        {"L\0\0\0\x01\x14\x02\0"s, "is a shortcut of Windows, not the file itself; give the file that it names"},
+        {"\0\x05\x16\x07"s, "has only the attributes that macOS keeps of a file (AppleDouble); give the file without ._ in its name"},
+        {"-----BEGIN PGP MESSAGE-----\n", "is encoded text (PGP MESSAGE), not a model; decode or decrypt it first"},
+        {std::string(76, 'a') + "\n" + std::string(76, '/') + "\nab==\n", "is text in base64; decode it first, for example with `base64 -d`"},
+        {"data:model/gltf-binary;base64,Z2xU", "is a data URI; decode what follows the comma, for example with `base64 -d`"},
+        {"# a\n<<<<<<< HEAD\nv 0 0 0\n=======\nv 0 0 1\n>>>>>>> b\n", "line 2: has the conflict markers of git; resolve the conflict first"},
+        {"/annex/objects/SHA256E-s1\n", "is a pointer of git-annex, not the file itself; run `git annex get`"},
+        {"404: Not Found", "is the answer of a web server, not a model; download the file itself"},
+        {"<?xml version='1.0'?>\n<Error><Code>AccessDenied</Code></Error>", "is XML with the element <Error>, which is no model that octopair knows; export glTF, OBJ or STL"},
+        {std::string("h\0e\0l\0l\0o\0 \0w\0o\0r\0l\0d\0", 22), "is text in UTF-16; save it as UTF-8"},
+    };
+    for (const std::string name : {"a.obj", "a.csv", "a.npy", "a", "a.ply"}) {
+        for (const auto& [content, message] : foreign) EXPECT_EQ(refusal(name, content), message) << name;
+    }
+}
+
+TEST_F(Formats, DirectoriesAreNamed) {
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { (void)io::read_scene(directory_.path(), {io::MeshObjects::node}); }),
+              directory_.path() + ": is a directory; give the name of a file in it");
+}
+
+TEST_F(Formats, ModelsWithSuchBeginningsAreRead) {
+    std::string stl(84 + 50, '\0');
+    for (const std::string begin : {"GIF89a", "MZ", "-----BEGIN A-----", "<svg>", "404: Not Found", "{\\rtf"}) {
+        stl.replace(0, begin.size(), begin);
+        stl[80] = 1;
+        EXPECT_EQ(io::wrapping_of({stl, stl.size()}, ".stl"), "") << begin;
+    }
+    EXPECT_EQ(io::wrapping_of({"<mesh>", 6}, ".xml"), "");
+    EXPECT_EQ(io::wrapping_of({"data:x,y,z,a,b,c\n", 17}, ".csv"), "");
+    EXPECT_EQ(io::wrapping_of({std::string(64, '0') + " 1 2\n", 69}, ".raw"), "");
+}
 
 TEST_F(Formats, SomeFormatsAreWrappedThemselves) {
     for (const std::string ending : {".3mf", ".zae", ".pk3"}) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "io/formats/foreign_content.hpp"
 #include "io/formats/format_table.hpp"
 
 namespace octopair::io {
@@ -94,6 +95,11 @@ constexpr auto packings = std::to_array<Packing>({
     {0, "BZh"sv, "compressed with bzip2", "bzip2 -dc"},
     {0, "\x28\xb5\x2f\xfd"sv, "compressed with zstd", "zstd -dc"},
     {0, "\x04\x22\x4d\x18"sv, "compressed with lz4", "lz4 -dc"},
+    {0, "LZIP\x01"sv, "compressed with lzip", "lzip -dc"},
+    {0, "\x89LZO\0"sv, "compressed with lzop", "lzop -dc"},
+    {0, "\x1f\x9d"sv, "compressed with compress", "gzip -dc"},
+    {0, "MSCF\0\0\0\0"sv, "a cabinet archive", "cabextract"},
+    {0, "!<arch>\n"sv, "an ar archive", "ar x"},
     {0, "7z\xbc\xaf\x27\x1c"sv, "a 7z archive", "7z x"},
     {0, "Rar!\x1a\x07"sv, "a RAR archive", "unrar x"},
     {0, "PK\x03\x04"sv, "a ZIP archive", "unzip"},
@@ -260,10 +266,28 @@ bool is_legal_packing(const Packing& packing, std::string_view ending) {
     return ending == ".blend" && (packing.bytes[0] == '\x1f' || packing.bytes[0] == '\x28');
 }
 
+/// HTML, or XHTML after an XML declaration and comments.
 bool is_html(std::string_view text) {
-    std::string begin(text.substr(0, 100));
+    std::string begin(text);
     for (char& c : begin) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
-    return begin.starts_with("<!doctype html") || begin.starts_with("<html");
+    return begin.starts_with("<!doctype html") || first_element(begin) == "html" || first_element(begin) == "head";
+}
+
+/// Returns whether all bytes are those of ASCII text in UTF-16, without a byte order mark. `high`: place of the high byte in a character.
+bool is_wide_ascii(std::string_view bytes, std::size_t high) {
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(bytes[i]);
+        const bool text = byte == '\t' || byte == '\n' || byte == '\r' || (byte >= ' ' && byte < 127);
+        if (i % 2 == high ? byte != 0 : !text) return false;
+    }
+    return bytes.size() >= 16;
+}
+
+/// The properties that all programs write, a dictionary of a power of 2, and the size: unknown, or less than 2^48.
+bool is_lzma(std::string_view bytes) {
+    if (bytes.size() < 14 || !bytes.starts_with("\x5d\0\0"sv)) return false;
+    const std::string_view size = bytes.substr(5, 8);
+    return size == "\xff\xff\xff\xff\xff\xff\xff\xff"sv || (size.ends_with("\0\0"sv) && size != "\0\0\0\0\0\0\0\0"sv);
 }
 
 /// Returns whether a reader of octopair reads files with this ending, or nobody is known to. Readers of Assimp know UTF-16.
@@ -277,7 +301,8 @@ bool is_for_octopair(std::string_view ending) {
 std::string_view wide_encoding(std::string_view bytes) {
     if (has_at(bytes, 0, "\xff\xfe\0\0"sv) || has_at(bytes, 0, "\0\0\xfe\xff"sv)) return "UTF-32";
     if (has_at(bytes, 0, "\xff\xfe"sv) || has_at(bytes, 0, "\xfe\xff"sv)) return "UTF-16";
-    return {};
+    const std::string_view begin = bytes.substr(0, 64);
+    return is_wide_ascii(begin, 0) || is_wide_ascii(begin, 1) ? "UTF-16" : "";
 }
 
 std::string text_of(const FileHead& head) {
@@ -303,6 +328,8 @@ std::string wrapping_of(const FileHead& head, std::string_view ending) {
     if (head.bytes.starts_with("version https://git-lfs.github.com/spec/"))
         return "is a Git LFS pointer, not the file itself; run `git lfs pull`";
     const std::string text = text_of(head);
+    if (is_lzma(head.bytes) && marked_format(head).empty())
+        return "is compressed with LZMA; unpack it first, for example with `xz --format=lzma -dc`";
     if (is_html(skip_white(text))) return "is an HTML page, not a model; download the file itself";
     for (const Packing& packing : packings) {
         if (!has_at(head.bytes, packing.offset, packing.bytes) || is_legal_packing(packing, ending)) continue;
@@ -310,6 +337,9 @@ std::string wrapping_of(const FileHead& head, std::string_view ending) {
         return fmt::format("is {}; unpack it first, for example with `{}`", packing.name, packing.command);
     }
     const std::string_view encoding = wide_encoding(head.bytes), mark = marked_format(head);
+    if (mark.empty()) {
+        if (std::string foreign = foreign_content(head, ending); !foreign.empty()) return foreign;
+    }
     if (encoding.empty() || !is_for_octopair(mark.empty() ? ending : mark)) return {};
     return fmt::format("is text in {}; save it as UTF-8", encoding);
 }

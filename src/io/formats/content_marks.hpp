@@ -1,7 +1,7 @@
 // Recognises the content of a file by its first bytes.
 //
 // - A mark is unmistakable: no valid file of another format begins with it. So a file with a mark has that format, whatever its name says.
-// - A file is wrapped if its content is not the model itself: compressed, a pointer of Git LFS, an HTML page.
+// - A file is wrapped if its content is not the model itself: compressed, a pointer of Git LFS, an HTML page (foreign_content.hpp has more).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct FileHead {
 /// Returns the beginning of a file as text for a search: UTF-8, without byte order mark. UTF-16 is narrowed to ASCII.
 std::string text_of(const FileHead& head);
 
-/// Returns the encoding that a byte order mark shows, "UTF-16" or "UTF-32", or an empty text.
+/// Returns the encoding that a byte order mark shows, "UTF-16" or "UTF-32", or an empty text. ASCII in UTF-16 is recognised without a mark.
 std::string_view wide_encoding(std::string_view bytes);
 
 /// Returns the first ending of the format whose mark a file has (format_table.hpp), or for formats without an ending their name. Empty:

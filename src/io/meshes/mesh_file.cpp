@@ -7,13 +7,14 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats.hpp"
 #include "io/formats/content_marks.hpp"
-#include "io/meshes/dxf_content.hpp"
 #include "io/meshes/faces/face_cutter.hpp"
 #include "io/meshes/ifc_schema.hpp"
 #include "io/meshes/root_pose.hpp"
@@ -57,33 +58,21 @@ IfcText read_text_of_ifc(const std::string& path, const KnownFormat& known) {
     return read;
 }
 
-/// Returns what Assimp leaves out of a DXF file.
-/// Throws: Error{bad_input} if Assimp would place something wrongly.
-std::vector<std::string> check_dxf(const std::string& path, const KnownFormat& known) {
-    if (known.ending != ".dxf") return {};
-    const Buffer<char> text = read_bytes(InputFile(path));
-    DxfFaults faults = find_dxf_faults({text.data(), text.size()});
-    if (faults.wrong.empty()) return std::move(faults.lost);
-    refuse(path,
-           fmt::format("{}, which Assimp places wrongly; explode the blocks (EXPLODE), or export glTF, OBJ or STL",
-                       faults.wrong));
-}
+/// Files of the system, but for one, whose content is given.
+class FilesWithText : public Assimp::DefaultIOSystem {
+public:
+    /// Requires: `text` outlives this object.
+    FilesWithText(std::string path, const std::string& text) : path_(std::move(path)), text_(text) {}
 
-/// Throws: Error{bad_input} for an AMF file with a rotated instance: Assimp takes the angle for a translation.
-void check_amf(const std::string& path, const KnownFormat& known) {
-    if (known.ending != ".amf") return;
-    const Buffer<char> bytes = read_bytes(InputFile(path));
-    const std::string_view text(bytes.data(), bytes.size());
-    for (const std::string_view tag : {"<rx>", "<ry>", "<rz>"}) {
-        for (std::size_t at = text.find(tag); at != std::string_view::npos; at = text.find(tag, at + 1)) {
-            const std::string_view angle = text.substr(at + tag.size(), text.find('<', at + 1) - at - tag.size());
-            if (angle.find_first_of("123456789") == std::string_view::npos) continue;
-            refuse(path,
-                   fmt::format("an instance is rotated ({}), which Assimp reads wrongly; export it as STL, OBJ or 3MF",
-                               tag));
-        }
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (file != path_) return DefaultIOSystem::Open(file, mode);
+        return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(text_.data()), text_.size());
     }
-}
+
+private:
+    std::string path_;
+    const std::string& text_;
+};
 
 /// Returns what to do about a file that Assimp refuses, as far as its content shows.
 std::string remedy_for(const InputFile& file) {
@@ -143,7 +132,7 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
     : path_(path),
       known_(known_format(path)),
       ifc_text_(read_text_of_ifc(path, known_)),
-      left_out_(check_dxf(path, known_)),
+      content_(check_mesh_content(path, known_)),
       scene_(&import(path)) {
     used_vertices_.resize(scene_->mNumMeshes);
     instances_ = InstanceSearch(*scene_, *this).find();
@@ -153,10 +142,10 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
 }
 
 const aiScene& MeshFile::import(const std::string& path) {
-    check_amf(path, known_);
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
     // Assimp chooses its reader by the ending. A file with another ending, or none, is read from memory, with the right one.
-    const aiScene* scene = known_.by_content ? import_bytes(read_bytes(readable)) : importer_.ReadFile(path, 0u);
+    const bool by_name = !known_.by_content && content_.ending.empty();
+    const aiScene* const scene = by_name ? import_by_name(path) : import_by_content(readable);
     readable.check_unchanged();
     if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
     rethrow_bad_alloc(importer_);
@@ -169,8 +158,17 @@ const aiScene& MeshFile::import(const std::string& path) {
     refuse(path, reason);
 }
 
-const aiScene* MeshFile::import_bytes(const Buffer<char>& bytes) {
-    return importer_.ReadFileFromMemory(bytes.data(), bytes.size(), 0u, known_.ending.c_str() + 1);
+const aiScene* MeshFile::import_by_name(const std::string& path) {
+    if (content_.text) importer_.SetIOHandler(new FilesWithText(path, *content_.text));
+    return importer_.ReadFile(path, 0u);
+}
+
+const aiScene* MeshFile::import_by_content(const InputFile& file) {
+    const char* const ending = (content_.ending.empty() ? known_.ending : content_.ending).c_str() + 1;
+    if (content_.text)
+        return importer_.ReadFileFromMemory(content_.text->data(), content_.text->size(), 0u, ending);
+    const Buffer<char> bytes = read_bytes(file);
+    return importer_.ReadFileFromMemory(bytes.data(), bytes.size(), 0u, ending);
 }
 
 /// Cuts the faces of all meshes that have faces with more than three corners.

@@ -16,8 +16,10 @@
 #include <assimp/Importer.hpp>
 
 #include "base/memory.hpp"
+#include "io/files/input_file.hpp"
 #include "io/formats.hpp"
 #include "io/meshes/bounded_pose.hpp"
+#include "io/meshes/content/mesh_content.hpp"
 #include "io/meshes/faces/crossing_faces.hpp"
 #include "io/meshes/ifc_elements.hpp"
 
@@ -38,7 +40,7 @@ class MeshFile {
 public:
     /// Reads a file. With `triangles`, faces with more than three corners are cut into triangles (FaceCutter).
     /// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, for a vertex index out of range, and if Assimp would place
-    /// something wrongly (dxf_content.hpp); Error{io_failed}.
+    /// something wrongly (mesh_content.hpp); Error{io_failed}.
     MeshFile(const std::string& path, bool triangles);
 
     /// Returns all instances, in pre-order of their nodes.
@@ -49,7 +51,7 @@ public:
     const std::string& path() const { return path_; }
     const KnownFormat& known() const { return known_; }
     /// Returns what Assimp left out, as far as the text of the file shows, for example "entities of type 3DSOLID (2)".
-    const std::vector<std::string>& left_out() const { return left_out_; }
+    const std::vector<std::string>& left_out() const { return content_.left_out; }
     /// Returns what the text of an IFC file says; nothing for other files, and for compressed ones.
     const IfcText& ifc_text() const { return ifc_text_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
@@ -85,7 +87,9 @@ private:
     using Corners = std::array<unsigned, 3>;
 
     const aiScene& import(const std::string& path);
-    const aiScene* import_bytes(const Buffer<char>& bytes);
+    const aiScene* import_by_name(const std::string& path);
+    /// Reads a file whose name has another ending than its format, or none.
+    const aiScene* import_by_content(const InputFile& file);
     void cut_faces();
     bool has_vertices(const MeshInstance& instance);
     std::vector<unsigned> find_used_vertices(const MeshInstance& instance, const aiMesh& mesh) const;
@@ -93,7 +97,7 @@ private:
     std::string path_;
     KnownFormat known_;
     IfcText ifc_text_;
-    std::vector<std::string> left_out_;
+    MeshContent content_;
     Assimp::Importer importer_;
     const aiScene* scene_;
     std::vector<MeshInstance> instances_;

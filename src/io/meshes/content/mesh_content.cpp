@@ -1,0 +1,66 @@
+#include "io/meshes/content/mesh_content.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "base/memory.hpp"
+#include "io/files/failure.hpp"
+#include "io/files/input_file.hpp"
+#include "io/meshes/content/amf_content.hpp"
+#include "io/meshes/content/collada_content.hpp"
+#include "io/meshes/content/directx_content.hpp"
+#include "io/meshes/content/dxf_content.hpp"
+#include "io/meshes/content/x3d_content.hpp"
+#include "io/meshes/content/xgl_content.hpp"
+#include "io/meshes/content/xml_tree.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// Only checks that the text is well-formed.
+MeshContent check_xml(const std::string& path, std::string_view text) {
+    (void)XmlTree(path, text);
+    return {};
+}
+
+struct ContentCheck {
+    std::string_view ending;
+    MeshContent (*check)(const std::string& path, std::string_view bytes);
+};
+
+constexpr auto checks = std::to_array<ContentCheck>({
+    {".amf", &correct_amf},
+    {".dae", &correct_collada},
+    {".x", &correct_directx},
+    {".dxf", &correct_dxf},
+    {".irr", &check_xml},
+    {".irrmesh", &check_xml},
+    {".x3d", &correct_x3d},
+    {".xgl", &correct_xgl},
+    {".xml", &check_xml},
+    {".zgl", &correct_zgl},
+});
+
+}  // namespace
+
+std::vector<std::string> LeftOut::list() const {
+    std::vector<std::string> texts;
+    for (const auto& [what, count] : counts_) texts.push_back(fmt::format("{} ({})", what, count));
+    return texts;
+}
+
+MeshContent check_mesh_content(const std::string& path, const KnownFormat& known) {
+    const auto found = std::find_if(checks.begin(), checks.end(),
+                                    [&](const ContentCheck& check) { return check.ending == known.ending; });
+    if (found == checks.end()) return {};
+    const InputFile file(path);
+    Buffer<char> bytes{std::size_t(file.size())};
+    file.read(0, std::as_writable_bytes(bytes.span()));
+    return found->check(path, {bytes.data(), bytes.size()});
+}
+
+}  // namespace octopair::io
