@@ -54,10 +54,12 @@ TEST_F(Info, RefusesWhatCannotBeRead) {
 }
 
 TEST_F(Info, RefusesWrongBoxesAsDetectDoes) {
-    write_file(file("a.npy"), npy_of(io::NpyType::float64, {2, 6}, std::vector<double>{0, 0, 0, 1, 1, 1, 0, 3, 0, 1, 2, 1}));
+    write_file(file("a.npy"),
+               npy_of(io::NpyType::float64, {2, 6}, std::vector<double>{0, 0, 0, 1, 1, 1, 0, 3, 0, 1, 2, 1}));
     write_file(file("nan.npy"), npy_of(io::NpyType::float32, {1, 6}, std::vector<float>{0, NAN, 0, 1, 1, 1}));
     write_file(file("a.csv"), "0,0,0,1,1,1\n0,0,5,1,1,1\n");
-    write_file(file("moving.npy"), npy_of(io::NpyType::float32, {2, 1, 6}, std::vector<float>{0, 0, 0, 1, 1, 1, 2, 0, 0, 1, 1, 1}));
+    write_file(file("moving.npy"),
+               npy_of(io::NpyType::float32, {2, 1, 6}, std::vector<float>{0, 0, 0, 1, 1, 1, 2, 0, 0, 1, 1, 1}));
     for (const std::string name : {"a.npy", "nan.npy", "a.csv", "moving.npy"}) {
         const Outcome info = run("info " + name), detect = run("detect " + name + " --quiet");
         EXPECT_EQ(info.status, 3) << name;

@@ -23,7 +23,9 @@ std::string dxf_block(const std::string& name, const std::string& content, const
            "0\nENDBLK\n8\n0\n";
 }
 
-std::string dxf_insert(const std::string& block, const std::string& groups) { return "0\nINSERT\n8\nL\n2\n" + block + "\n" + groups; }
+std::string dxf_insert(const std::string& block, const std::string& groups) {
+    return "0\nINSERT\n8\nL\n2\n" + block + "\n" + groups;
+}
 
 ImportedScene read_dxf(const std::string& entities, const std::string& blocks = "") {
     return import_text(".dxf", dxf_section("BLOCKS", blocks) + dxf_section("ENTITIES", entities) + "0\nEOF\n");
@@ -52,11 +54,12 @@ TEST(DxfContent, BlocksAreInserted) {
 }
 
 TEST(DxfContent, BlocksInBlocksAreInserted) {
-    const std::string blocks = dxf_block("A", one_face) + dxf_block("B", dxf_insert("A", "10\n1\n50\n90\n") + "0\nCIRCLE\n10\n5\n40\n2\n" + one_face);
+    const std::string blocks = dxf_block("A", one_face) + dxf_block("B", dxf_insert("A", "10\n1\n50\n90\n") +
+                                                                             "0\nCIRCLE\n10\n5\n40\n2\n" + one_face);
     EXPECT_EQ(box_in_dxf(dxf_insert("B", at_10_20_30), blocks), "9 20 30 11 22 34");
     EXPECT_EQ(refusal_of_text(".dxf", dxf_section("BLOCKS", dxf_block("A", dxf_insert("A", "10\n0\n"))) +
                                           dxf_section("ENTITIES", dxf_insert("A", "10\n0\n"))),
-              "line 22: the block 'A' is inserted in itself");
+              "line 20: the block 'A' is inserted in itself");
 }
 
 TEST(DxfContent, AllLineEndsAreUnderstood) {
@@ -74,16 +77,18 @@ TEST(DxfContent, PolylinesAreRead) {
     EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nL\n70\n0\n210\n0\n220\n0\n230\n-1\n" + three), "-5 0 0 0 7 0");
     EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nL\n70\n0\n39\n2.5\n" + three), "0 0 0 5 7 2.5") << "a thickness";
     EXPECT_EQ(box_in_dxf("0\nPOLYLINE\n8\nM\n70\n0\n0\nSEQEND\n" + one_face), "0 0 0 1 2 4") << "no vertex";
-    const std::string grid = "0\nPOLYLINE\n8\nL\n70\n16\n71\n2\n72\n2\n" + vertex(0, 0, 0) + vertex(1, 0, 0) + vertex(0, 2, 0) +
-                             vertex(1, 2, 3) + "0\nSEQEND\n";
+    const std::string grid = "0\nPOLYLINE\n8\nL\n70\n16\n71\n2\n72\n2\n" + vertex(0, 0, 0) + vertex(1, 0, 0) +
+                             vertex(0, 2, 0) + vertex(1, 2, 3) + "0\nSEQEND\n";
     EXPECT_EQ(box_in_dxf(grid), "0 0 0 1 2 3");
-    const std::string corners = vertex(0, 0, 0, "70\n192\n") + vertex(1, 0, 0, "70\n192\n") + vertex(0, 2, 4, "70\n192\n");
+    const std::string corners =
+        vertex(0, 0, 0, "70\n192\n") + vertex(1, 0, 0, "70\n192\n") + vertex(0, 2, 4, "70\n192\n");
     const auto mesh = [&](int last) {
         return "0\nPOLYLINE\n8\nL\n70\n64\n71\n3\n72\n1\n" + corners +
                fmt::format("0\nVERTEX\n8\nL\n10\n0\n70\n128\n71\n1\n72\n-2\n73\n{}\n0\nSEQEND\n", last);
     };
     EXPECT_EQ(box_in_dxf(mesh(3)), "0 0 0 1 2 4") << "a corner after an invisible edge";
-    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("ENTITIES", mesh(4))), "line 50: a face refers to vertex 4, but the mesh has 3 vertices");
+    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("ENTITIES", mesh(4))),
+              "line 52: a face refers to vertex 4, but the mesh has 3 vertices");
 }
 
 TEST(DxfContent, TextsWithBracesDoNotSwallowTheModel) {
@@ -94,7 +99,8 @@ TEST(DxfContent, TextsWithBracesDoNotSwallowTheModel) {
 TEST(DxfContent, ThePaperIsLeftOut) {
     std::string on_paper = one_face;
     on_paper.replace(on_paper.find("8\nL\n"), 4, "67\n1\n8\nP\n");
-    const ImportedScene scene = read_dxf(on_paper + one_face + dxf_insert("A", "67\n1\n10\n50\n"), dxf_block("A", one_face));
+    const ImportedScene scene =
+        read_dxf(on_paper + one_face + dxf_insert("A", "67\n1\n10\n50\n"), dxf_block("A", one_face));
     EXPECT_EQ(scene.objects.size(), 1u);
     EXPECT_EQ(scene.not_read, Texts{"entities of the paper space (2)"});
 }
@@ -116,8 +122,10 @@ TEST(DxfContent, FaultsAreRefused) {
               "is cut: the section ENTITIES has no ENDSEC; export the file again");
     std::string wrong = one_face;
     wrong.replace(wrong.find("10\n0\n"), 5, "10\nx\n");
-    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("ENTITIES", wrong)), "line 6: 3DFACE has 'x' as group 10, which is no number");
-    for (const std::string text : {"\n", "0", "0\nSECTION\n2\nBLOCKS\n10\n1\n", "0\nSECTION\n2\nENTITIES\n0\nINSERT", "x\ny\nz\n"})
+    EXPECT_EQ(refusal_of_text(".dxf", dxf_section("ENTITIES", wrong)),
+              "line 6: 3DFACE has 'x' as group 10, which is no number");
+    for (const std::string text :
+         {"\n", "0", "0\nSECTION\n2\nBLOCKS\n10\n1\n", "0\nSECTION\n2\nENTITIES\n0\nINSERT", "x\ny\nz\n"})
         EXPECT_NE(refusal_of_text(".dxf", text), "") << text;
 }
 
@@ -127,6 +135,28 @@ TEST(DxfContent, LayersAreObjects) {
     const ImportedScene scene = read_dxf(one_face + other + one_face);
     EXPECT_EQ(boxes_named(scene, "L"), Texts{"0 0 0 1 2 4"});
     EXPECT_EQ(boxes_named(scene, "(M"), Texts{"0 0 0 1 2 4"});
+}
+
+TEST(DxfContent, UncommonFaultsAreRefused) {
+    const auto refusal = [](const std::string& entities, const std::string& blocks = "") {
+        return refusal_of_text(".dxf", dxf_section("BLOCKS", blocks) + dxf_section("ENTITIES", entities) + "0\nEOF\n");
+    };
+    EXPECT_EQ(refusal("0\nPOLYLINE\n70\n16\n71\n2\n72\n2\n0\nVERTEX\n10\n0\n0\nSEQEND\n"),
+              "line 12: the mesh has 1 points in place of 2 times 2");
+    EXPECT_EQ(refusal(dxf_insert("A", "70\n1e10\n"), dxf_block("A", one_face)),
+              "line 60: INSERT has '1e10' as group 70, which is too large");
+    EXPECT_EQ(refusal(dxf_insert("A", "70\n4000\n71\n4000\n"), dxf_block("A", "")),
+              "line 28: more than 10000000 blocks are inserted");
+}
+
+TEST(DxfContent, ArcsAndReferencesAreCounted) {
+    const std::string arc =
+        "0\nPOLYLINE\n8\nL\n70\n8\n0\nVERTEX\n10\n0\n20\n0\n42\n1\n0\nVERTEX\n10\n4\n20\n0\n0\nSEQEND\n";
+    std::string external = dxf_block("A", "");
+    external.replace(external.find("70\n0\n"), 5, "70\n4\n");
+    EXPECT_EQ(
+        read_dxf(arc + dxf_insert("A", "10\n0\n"), external).not_read,
+        (Texts{"arcs of lines, which are read as straight (1)", "blocks in other files (external references) (1)"}));
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ std::string at_x(int x, const std::string& name, const std::string& children = b
 ImportedScene read_x3d(const std::string& nodes) { return import_text(".x3d", x3d_of(nodes)); }
 
 TEST(X3dContent, NodesAfterEmptyAndUsedGroupsKeepTheirPlaces) {
-    const ImportedScene scene = read_x3d(at_x(10, "A") + "<Group DEF='E'/>" + at_x(20, "B") + "<Transform DEF='P' translation='0 100 0'>" +
-                                         "<Transform USE='A'/>" + at_x(30, "C") + "</Transform>" + at_x(40, "D"));
+    const ImportedScene scene =
+        read_x3d(at_x(10, "A") + "<Group DEF='E'/>" + at_x(20, "B") + "<Transform DEF='P' translation='0 100 0'>" +
+                 "<Transform USE='A'/>" + at_x(30, "C") + "</Transform>" + at_x(40, "D"));
     EXPECT_EQ(scene.objects.size(), 5u);
     EXPECT_EQ(boxes_named(scene, "A"), (Texts{"9 -2 -3 11 2 3", "9 98 -3 11 102 3"}));
     EXPECT_EQ(boxes_named(scene, "B"), Texts{"19 -2 -3 21 2 3"});
@@ -64,7 +65,8 @@ TEST(X3dContent, ShapesAreThoseOfTheFormat) {
     EXPECT_EQ(shape("<IndexedFaceSet coordIndex='0 3 2'>" + points + "</IndexedFaceSet>"), "0 0 0 3 3 3");
     EXPECT_EQ(shape("<TriangleStripSet stripCount='4'>" + points + "</TriangleStripSet>"), "0 0 0 3 3 3");
     EXPECT_EQ(shape("<QuadSet>" + points + "</QuadSet>"), "0 0 0 3 3 3");
-    EXPECT_EQ(shape("<IndexedTriangleFanSet index='0 1 2 -1 0 1 2'>" + points + "</IndexedTriangleFanSet>"), "0 0 0 1 2 0");
+    EXPECT_EQ(shape("<IndexedTriangleFanSet index='0 1 2 -1 0 1 2'>" + points + "</IndexedTriangleFanSet>"),
+              "0 0 0 1 2 0");
     EXPECT_EQ(shape("<ElevationGrid xDimension='2' zDimension='3' xSpacing='4' zSpacing='5' height='0 1 2 3 4 5'/>"),
               "0 0 0 4 5 10");
     EXPECT_EQ(shape("<Cylinder height='4' radius='1'/>"), "-1 -2 -1 1 2 1");
@@ -93,9 +95,13 @@ TEST(X3dContent, ConesStandOnTheirBases) {
 TEST(X3dContent, FilesOfInlineNodesAreRead) {
     const TemporaryDirectory directory;
     const std::string path = directory.file("scene.x3d");
-    write_file(path, x3d_of("<Transform translation='5 0 0'><Inline url='\"http://x.invalid/part.x3d\" \"part.x3d\"'/></Transform>"));
+    write_file(
+        path,
+        x3d_of(
+            "<Transform translation='5 0 0'><Inline url='\"http://x.invalid/part.x3d\" \"part.x3d\"'/></Transform>"));
     const auto read = [&] { return io::read_scene(path, {io::MeshObjects::node}); };
-    EXPECT_NE(error_of(ErrorCode::bad_input, read).find("line 3: no file that the Inline node names"), std::string::npos);
+    EXPECT_NE(error_of(ErrorCode::bad_input, read).find("line 3: no file that the Inline node names"),
+              std::string::npos);
     write_file(directory.file("part.x3d"), x3d_of("<Group/>" + at_x(10, "A")));
     const io::LoadedScene scene = read();
     ASSERT_EQ(scene.objects, 1u);
@@ -105,7 +111,8 @@ TEST(X3dContent, FilesOfInlineNodesAreRead) {
 TEST(X3dContent, WhatIsNotReadIsCounted) {
     const ImportedScene scene =
         read_x3d("<LOD>" + box_shape + "</LOD><Shape><Text string='a'/></Shape><ProtoInstance name='p'/>" + box_shape +
-                 "<Anchor DEF='A'>" + box_shape + "</Anchor><Collision><Shape containerField='proxy'><Box/></Shape></Collision>");
+                 "<Anchor DEF='A'>" + box_shape +
+                 "</Anchor><Collision><Shape containerField='proxy'><Box/></Shape></Collision>");
     EXPECT_EQ(scene.not_read,
               (Texts{"geometry of type Text (1)", "nodes of type LOD (1)", "nodes of type ProtoInstance (1)"}));
     EXPECT_EQ(scene.warnings.size(), 1u);
@@ -114,7 +121,8 @@ TEST(X3dContent, WhatIsNotReadIsCounted) {
 
 TEST(X3dContent, FaultsAreRefusedWithTheirLines) {
     const auto refusal = [](const std::string& nodes) { return refusal_of_text(".x3d", x3d_of(nodes)); };
-    EXPECT_EQ(refusal("<Group><Shape></Group></Shape>"), "line 3: is not well-formed XML (mismatched tag); export the file again");
+    EXPECT_EQ(refusal("<Group><Shape></Group></Shape>"),
+              "line 3: is not well-formed XML (mismatched tag); export the file again");
     EXPECT_EQ(refusal("\n<Shape USE='a'/>"), "line 4: USE=\"a\": no node before it has this name as DEF");
     EXPECT_EQ(refusal("<Group DEF='a'><Group USE='a'/></Group>"), "line 3: <Group> uses a node that contains it");
     EXPECT_EQ(refusal("<Transform translation='1 b 2'/>"), "line 3: translation has 'b', which is no number");
@@ -127,8 +135,9 @@ TEST(X3dContent, FaultsAreRefusedWithTheirLines) {
               "line 3: point has 2 numbers, which is no multiple of 3");
     EXPECT_EQ(geometry("<ElevationGrid xDimension='2' zDimension='2' height='1 2 3'/>"),
               "line 3: has 3 heights in place of 2 times 2");
-    EXPECT_EQ(geometry("<Extrusion spine='0 0 0 1 0 0'/>"),
-              "line 3: an Extrusion along a straight spine other than y is read wrongly; export it as an IndexedFaceSet");
+    EXPECT_EQ(
+        geometry("<Extrusion spine='0 0 0 1 0 0'/>"),
+        "line 3: an Extrusion along a straight spine other than y is read wrongly; export it as an IndexedFaceSet");
     EXPECT_EQ(refusal_of_text(".x3d", "<html/>").substr(0, 6), "is an ");
     EXPECT_EQ(refusal_of_text(".x3d", "<scene/>"), "has no element <X3D>, which X3D files have");
 }
@@ -138,6 +147,49 @@ TEST(X3dContent, AllEncodingsAreRead) {
     EXPECT_EQ(import_text(".x3d", text).objects.count("\u00fc"), 1u) << "Latin-1 without a declaration";
     const std::string declared = "<?xml version=\"1.0\" encoding=\"windows-1252\"?>" + text.substr(text.find('\n'));
     EXPECT_EQ(import_text(".x3d", declared).objects.count("\u00fc"), 1u);
+}
+
+TEST(X3dContent, UncommonFaultsAreRefused) {
+    const auto geometry = [](const std::string& node) {
+        return refusal_of_text(".x3d", x3d_of("<Shape>" + node + "</Shape>"));
+    };
+    const std::string points = "<Coordinate point='0 0 0 1 0 0 0 2 0'/>";
+    EXPECT_EQ(geometry("<IndexedFaceSet coordIndex='0'><GeoCoordinate/></IndexedFaceSet>"),
+              "line 3: has its points in a GeoCoordinate, which octopair does not read; export a Coordinate");
+    EXPECT_EQ(geometry("<TriangleFanSet fanCount='4'>" + points + "</TriangleFanSet>"),
+              "line 3: fanCount needs more than 3 points");
+    EXPECT_EQ(geometry("<IndexedTriangleSet index='0 1 -1'>" + points + "</IndexedTriangleSet>"),
+              "line 3: index has a negative index");
+    EXPECT_EQ(geometry("<Cylinder radius='1 2'/>"), "line 3: radius has 2 numbers in place of one");
+    EXPECT_EQ(geometry("<Extrusion spine='0 0 0 0 1 0' orientation='0 1 0 1'/>"),
+              "line 3: an Extrusion with orientations is read wrongly; export it as an IndexedFaceSet");
+    EXPECT_EQ(geometry("<Extrusion spine='0 0 0 0 1 0 0 2 0' scale='1 1 2 2'/>"), "line 3: has 2 scales for 3 points");
+    EXPECT_EQ(refusal_of_text(".x3d", x3d_of("<Transform rotation='0 0 1'/>")),
+              "line 3: rotation has 3 numbers in place of 4");
+    EXPECT_EQ(refusal_of_text(".x3d", x3d_of("<Inline url='scene.x3d'/>")),
+              "line 3: the files that Inline nodes name are nested more than 16 times");
+    std::string deep;
+    for (int i = 0; i < 5000; ++i) deep += "<Group>";
+    EXPECT_EQ(refusal_of_text(".x3d", x3d_of(deep)), "line 3: more than 5000 elements are nested");
+}
+
+TEST(X3dContent, OtherGeometryIsRead) {
+    const auto shape = [](const std::string& geometry) {
+        return boxes_named(read_x3d("<Group DEF='G'><Shape>" + geometry + "</Shape></Group>"), "G").at(0);
+    };
+    const std::string points = "<Coordinate DEF='c' point='0 0 0 1 0 0 0 2 0 3 3 3'/>";
+    EXPECT_EQ(shape("<IndexedQuadSet index='0 1 3 2'>" + points + "</IndexedQuadSet>"), "0 0 0 3 3 3");
+    EXPECT_EQ(shape("<TriangleSet>" + points + "</TriangleSet>"), "0 0 0 1 2 0") << "three of four points";
+    EXPECT_EQ(shape("<IndexedTriangleStripSet index='0 1 2 3 -1'>" + points + "</IndexedTriangleStripSet>"),
+              "0 0 0 3 3 3");
+    EXPECT_EQ(shape("<IndexedLineSet coordIndex='0 1 2'>" + points + "</IndexedLineSet>"), "0 0 0 1 2 0");
+    EXPECT_EQ(shape("<LineSet vertexCount='2'>" + points + "</LineSet>"), "0 0 0 1 0 0");
+    EXPECT_EQ(shape("<PointSet>" + points + "</PointSet>"), "0 0 0 3 3 3");
+    EXPECT_EQ(shape("<Rectangle2D size='4 6'/>"), "-2 -3 0 2 3 0");
+    const ImportedScene used =
+        read_x3d("<Group DEF='G'><Shape><PointSet>" + points + "</PointSet></Shape></Group><Group DEF='H'><Shape>" +
+                 "<IndexedFaceSet coordIndex='0 1 2'><Coordinate USE='c'/></IndexedFaceSet></Shape></Group>");
+    EXPECT_EQ(boxes_named(used, "H"), Texts{"0 0 0 1 2 0"});
 }
 
 }  // namespace

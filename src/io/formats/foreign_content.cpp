@@ -37,7 +37,8 @@ constexpr auto foreign_marks = std::to_array<ForeignMark>({
     {"L\0\0\0\x01\x14\x02\0"sv, "is a shortcut of Windows, not the file itself; give the file that it names"},
     {"[InternetShortcut]"sv, "is a shortcut of Windows, not the file itself; download the file that it names"},
     {"[Desktop Entry]"sv, "is a shortcut, not the file itself; give the file that it names"},
-    {"\0\x05\x16\x07"sv, "has only the attributes that macOS keeps of a file (AppleDouble); give the file without ._ in its name"},
+    {"\0\x05\x16\x07"sv,
+     "has only the attributes that macOS keeps of a file (AppleDouble); give the file without ._ in its name"},
     {"\0\x05\x16\0"sv, "is a file with its attributes in one (AppleSingle); unpack it first"},
     {"/annex/objects/"sv, "is a pointer of git-annex, not the file itself; run `git annex get`"},
     {"outs:\n- md5:"sv, "is a pointer of DVC, not the file itself; run `dvc pull`"},
@@ -91,7 +92,8 @@ bool is_base64(std::string_view text) {
         const std::string_view line = take_line_of(text);
         const bool last = without_white(text).empty();
         const bool legal = std::all_of(line.begin(), line.end(), [](char c) {
-            return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' || c == '/' || c == '=';
+            return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' || c == '/' ||
+                   c == '=';
         });
         if (!legal || (line.size() < 60 && !last)) return false;
         lines += line.size() >= 60;
@@ -115,7 +117,7 @@ bool may_be_xml(std::string_view ending) {
 
 std::string foreign_xml(std::string_view text, std::string_view ending) {
     const std::string_view element = first_element(text);
-    if (element.empty() || may_be_xml(ending)) return {};
+    if (element.empty() || may_be_xml(ending) || text.find('\0') != std::string_view::npos) return {};
     return fmt::format("is XML with the element <{}>, which is no model that octopair knows; export glTF, OBJ or STL",
                        shown(element));
 }
@@ -132,7 +134,8 @@ std::string_view first_element(std::string_view text) {
     }
     if (!text.starts_with('<')) return {};
     const std::string_view name = text.substr(1, text.find_first_of(" \t\r\n/>", 1) - 1);
-    const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c != '<'; });
+    const bool is_name =
+        !name.empty() && std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c != '<'; });
     return is_name && text.size() > name.size() + 1 ? name : std::string_view();
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <span>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
@@ -61,20 +63,38 @@ std::string lost_elements(const MeshFile& file) {
         name == text.names.end() ? "" : fmt::format(" ('{}')", name->second));
 }
 
+/// Returns what the importer of DirectX left out: corners beyond the vertices. The text of a file is checked before; a binary file is not.
+std::vector<std::string> lost_corners(const MeshFile& file) {
+    if (file.known().ending != ".x") return {};
+    std::uint64_t faces = 0;
+    for (const aiMesh* mesh : std::span(file.scene().mMeshes, file.scene().mNumMeshes)) {
+        for (const aiFace& face : std::span(mesh->mFaces, mesh->mNumFaces)) faces += face.mNumIndices < 3;
+    }
+    if (faces == 0) return {};
+    return {fmt::format("faces with fewer than three corners within the vertices ({})", faces)};
+}
+
+/// Returns what the content of the file, and its importer, show as left out.
+std::vector<std::string> lost_parts(const MeshFile& file) {
+    std::vector<std::string> lost = file.left_out();
+    for (std::string& part : lost_corners(file)) lost.push_back(std::move(part));
+    return lost;
+}
+
 }  // namespace
 
 std::vector<std::string> import_warnings(const MeshFile& file) {
     std::vector<std::string> warnings = {unchecked_format(file), lost_elements(file)};
-    if (!file.left_out().empty()) {
+    if (const std::vector<std::string> lost = lost_parts(file); !lost.empty()) {
         warnings.push_back(fmt::format("{}: Assimp does not read {}; export the model as glTF, OBJ or STL", file.path(),
-                                       fmt::join(file.left_out(), ", ")));
+                                       fmt::join(lost, ", ")));
     }
     std::erase(warnings, "");
     return warnings;
 }
 
 std::vector<std::string> left_out_of(const MeshFile& file) {
-    std::vector<std::string> left_out = file.left_out();
+    std::vector<std::string> left_out = lost_parts(file);
     for (const auto& [type, count] : file.ifc_text().left_out) left_out.push_back(fmt::format("{} ({})", type, count));
     if (const unsigned count = file.scene().mNumAnimations) left_out.push_back(fmt::format("animations ({})", count));
     return left_out;

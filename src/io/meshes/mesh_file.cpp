@@ -6,9 +6,9 @@
 #include <new>
 #include <numeric>
 
-#include <fmt/format.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
+#include <fmt/format.h>
 
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
@@ -165,8 +165,7 @@ const aiScene* MeshFile::import_by_name(const std::string& path) {
 
 const aiScene* MeshFile::import_by_content(const InputFile& file) {
     const char* const ending = (content_.ending.empty() ? known_.ending : content_.ending).c_str() + 1;
-    if (content_.text)
-        return importer_.ReadFileFromMemory(content_.text->data(), content_.text->size(), 0u, ending);
+    if (content_.text) return importer_.ReadFileFromMemory(content_.text->data(), content_.text->size(), 0u, ending);
     const Buffer<char> bytes = read_bytes(file);
     return importer_.ReadFileFromMemory(bytes.data(), bytes.size(), 0u, ending);
 }

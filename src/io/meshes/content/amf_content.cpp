@@ -54,8 +54,9 @@ private:
         const auto id = element.attribute("id");
         const auto [first, is_new] = ids_.try_emplace(std::string(id.value_or("")), element.line());
         if (is_new) return;
-        element.refuse(id ? fmt::format("the id '{}' is that of line {}, too; give each object an id", shown(*id), first->second)
-                          : fmt::format("has no id, as in line {}; give each object an id", first->second));
+        element.refuse(
+            id ? fmt::format("the id '{}' is that of line {}, too; give each object an id", shown(*id), first->second)
+               : fmt::format("has no id, as in line {}; give each object an id", first->second));
     }
 
     void write_object(const XmlElement& object) {
@@ -117,8 +118,8 @@ private:
         for (const std::string_view corner : {"v1", "v2", "v3"}) {
             const double index = number_in(triangle, corner);
             if (!(index >= 0 && index < double(end - first)) || index != std::floor(index)) {
-                triangle.refuse(fmt::format("<{}> is {}, but the object has {} vertices", corner, number_text(index),
-                                            end - first));
+                triangle.refuse(
+                    fmt::format("<{}> is {}, but the object has {} vertices", corner, number_text(index), end - first));
             }
             write_number(corner, index + double(first));
         }
@@ -149,8 +150,8 @@ private:
     static void refuse_rotation(const XmlElement& value) {
         const std::string_view name = value.name();
         if ((name == "rx" || name == "ry" || name == "rz") && only_number(value) != 0) {
-            value.refuse(fmt::format("an instance is rotated (<{}>), which Assimp reads wrongly; export it as STL, OBJ or 3MF",
-                                     name));
+            value.refuse(fmt::format(
+                "an instance is rotated (<{}>), which Assimp reads wrongly; export it as STL, OBJ or 3MF", name));
         }
     }
 

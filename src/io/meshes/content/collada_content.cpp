@@ -112,7 +112,8 @@ public:
     explicit ColladaWriter(const XmlTree& tree) : tree_(tree) {
         for (std::size_t i = 0; i < tree.size(); ++i) {
             const XmlElement element = tree.at(i);
-            const auto id = element.attribute("id");
+            const auto id = element.attribute("id"), name = element.attribute("name");
+            if (element.name() == "node" && name) named_nodes_.try_emplace(std::string(*name), i);
             if (!id) continue;
             if (element.name() == "geometry" && !geometries_.try_emplace(std::string(*id), i).second)
                 element.refuse(fmt::format("a second geometry has the id '{}'", shown(*id)));
@@ -126,9 +127,9 @@ public:
         out_.open(root.name());
         if (const auto version = root.attribute("version")) out_.attribute("version", *version);
         write_asset();
-        constexpr std::array dropped = {"asset"sv,          "extra"sv,         "library_geometries"sv,
-                                        "library_nodes"sv,  "library_lights"sv, "library_cameras"sv,
-                                        "library_visual_scenes"sv, "scene"sv};
+        constexpr std::array dropped = {
+            "asset"sv,          "extra"sv,           "library_geometries"sv,    "library_nodes"sv,
+            "library_lights"sv, "library_cameras"sv, "library_visual_scenes"sv, "scene"sv};
         const std::string scene = scene_text();  // first, because it says how often a geometry is needed
         for (const XmlElement& child : root.children()) {
             if (!is_one_of(child.name(), dropped)) copy(child);
@@ -238,17 +239,10 @@ private:
         if (id.empty()) return left_out_.add("instances of nodes in other files");
         const auto found = nodes_.find(id);
         if (found != nodes_.end()) return write_node(tree_.at(found->second));
-        const auto named = node_with_name(id);
-        if (!named) return left_out_.add("instances of nodes that the file does not have");
-        write_node(*named);
-    }
-
-    /// Some programs write a name in place of an id.
-    std::optional<XmlElement> node_with_name(std::string_view name) const {
-        for (std::size_t i = 0; i < tree_.size(); ++i) {
-            if (tree_.at(i).name() == "node" && tree_.at(i).attribute("name") == name) return tree_.at(i);
-        }
-        return std::nullopt;
+        // Some programs write a name in place of an id.
+        const auto named = named_nodes_.find(id);
+        if (named == named_nodes_.end()) return left_out_.add("instances of nodes that the file does not have");
+        write_node(tree_.at(named->second));
     }
 
     void write_instance(const XmlElement& instance) {
@@ -300,7 +294,8 @@ private:
             const auto mesh = geometry.child("mesh");
             const auto bindings = bindings_.find(id);
             if (!mesh || (bindings == bindings_.end() && controllers_.empty())) continue;
-            const std::size_t copies = bindings == bindings_.end() ? 1 : std::max<std::size_t>(1, bindings->second.size());
+            const std::size_t copies =
+                bindings == bindings_.end() ? 1 : std::max<std::size_t>(1, bindings->second.size());
             for (std::size_t copy = 0; copy < copies; ++copy) {
                 out_.open("geometry");
                 out_.attribute("id", copy_id(id, copy));
@@ -318,6 +313,7 @@ private:
     XmlWriter out_, scene_;
     LeftOut left_out_;
     std::map<std::string, std::size_t> geometries_, controllers_, nodes_;  // id -> element
+    std::map<std::string, std::size_t> named_nodes_;                       // name -> first node
     std::map<std::string, std::vector<std::string>> bindings_;  // id of a geometry -> materials of its instances
     std::vector<std::size_t> open_;                             // nodes that are being written
 };

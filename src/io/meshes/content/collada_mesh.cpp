@@ -87,7 +87,8 @@ std::vector<double> positions_of(const XmlElement& source) {
     const std::size_t stride = whole_or(*accessor, "stride", 1);
     const std::size_t last = *std::max_element(places.begin(), places.end());
     if (count > 0 && (stride <= last || offset + (count - 1) * stride + last >= values.size()))
-        accessor->refuse(fmt::format("{} positions with a stride of {} do not fit to {} values", count, stride, values.size()));
+        accessor->refuse(
+            fmt::format("{} positions with a stride of {} do not fit to {} values", count, stride, values.size()));
     std::vector<double> positions;
     for (std::size_t i = 0; i < count; ++i) {
         for (const std::size_t place : places) positions.push_back(values[offset + i * stride + place]);
@@ -138,7 +139,8 @@ void add_run(std::string_view group, const std::vector<double>& run, Primitives&
 }
 
 /// Appends the primitives of a <p> that has many.
-void add_many(const XmlElement& group, const XmlElement& p, const std::vector<double>& corners, Primitives& primitives) {
+void add_many(const XmlElement& group, const XmlElement& p, const std::vector<double>& corners,
+              Primitives& primitives) {
     std::vector<double> sizes;
     double sum = 0;
     if (group.name() == "polylist") {
@@ -159,8 +161,7 @@ void add_many(const XmlElement& group, const XmlElement& p, const std::vector<do
 /// Returns the place of the index of the position among the indices of a corner, and how many indices a corner has.
 std::pair<std::size_t, std::size_t> offset_and_stride(const XmlElement& group, const XmlElement& input) {
     std::size_t stride = 1;
-    for (const XmlElement& other : group.children("input"))
-        stride = std::max(stride, whole_or(other, "offset", 0) + 1);
+    for (const XmlElement& other : group.children("input")) stride = std::max(stride, whole_or(other, "offset", 0) + 1);
     return {whole_or(input, "offset", 0), stride};
 }
 
@@ -274,7 +275,8 @@ void write_collada_mesh(const XmlElement& mesh, XmlWriter& out) {
     for (const XmlElement& group : mesh.children()) {
         if (!is_primitive_group(group) || (!group.contains("p") && !group.contains("ph"))) continue;
         const auto [next, input] = position_source(group, mesh);
-        if (source && *source != next.index()) group.refuse("the primitives of a mesh have positions of several sources");
+        if (source && *source != next.index())
+            group.refuse("the primitives of a mesh have positions of several sources");
         if (!source) {
             source = next.index();
             positions = positions_of(next);

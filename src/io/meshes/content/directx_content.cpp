@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
-#include "io/meshes/content/directx_tokens.hpp"
+#include "io/meshes/content/text_tokens.hpp"
 
 namespace octopair::io {
 
@@ -23,12 +23,12 @@ struct Frame {
 
 class DirectxCheck {
 public:
-    DirectxCheck(const std::string& path, std::string_view text) : text_(text), tokens_(path, text) {
+    DirectxCheck(const std::string& path, std::string_view text) : text_(text), tokens_(path, text, "{};,", '#') {
         while (tokens_.peek().offset < header_bytes && !tokens_.peek().text.empty()) tokens_.next();
     }
 
     MeshContent check() {
-        for (DirectxToken token = tokens_.next(); !token.text.empty(); token = tokens_.next()) check_object(token, file_);
+        for (TextToken token = tokens_.next(); !token.text.empty(); token = tokens_.next()) check_object(token, file_);
         if (file_.meshes && file_.frames == 1) insertions_.emplace_back(text_.size(), "\nFrame { }\n");
         MeshContent content;
         content.left_out = left_out_.list();
@@ -38,7 +38,7 @@ public:
 
 private:
     /// Reads an object of the file, or of a frame. `parent` gets what it is.
-    void check_object(const DirectxToken& type, Frame& parent) {
+    void check_object(const TextToken& type, Frame& parent) {
         if (type.text == "}" || type.text == ";" || type.text == ",") return;
         if (type.text == "{") {
             tokens_.refuse(type.line, fmt::format("the reference to '{}' is not read; export the object in its place",
@@ -60,20 +60,20 @@ private:
     }
 
     /// Reads the name of an object and its brace. Returns whether the object has a name.
-    bool open(const DirectxToken& type) {
-        DirectxToken token = tokens_.next();
+    bool open(const TextToken& type) {
+        TextToken token = tokens_.next();
         const bool named = token.text != "{";
         if (named) token = tokens_.next();
         if (token.text != "{") tokens_.refuse(type.line, fmt::format("'{}' without a brace", shown(type.text)));
         return named;
     }
 
-    void check_frame(const DirectxToken& type, Frame& parent) {
+    void check_frame(const TextToken& type, Frame& parent) {
         if (++depth_ > max_frames) tokens_.refuse(type.line, fmt::format("more than {} frames are nested", max_frames));
         const bool named = open(type);
         const std::size_t name_place = type.offset + type.text.size();
         Frame frame;
-        for (DirectxToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
+        for (TextToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
             if (token.text.empty()) tokens_.refuse(type.line, "the frame does not end: the file is cut");
             check_object(token, frame);
         }
@@ -84,7 +84,7 @@ private:
 
     /// Puts a space after each comma.
     void check_matrix() {
-        for (DirectxToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
+        for (TextToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
             if (token.text.empty() || token.text == "{") tokens_.refuse(token.line, "the matrix does not end");
             const std::size_t after = token.offset + 1;
             if (token.text == "," && after < text_.size() && text_[after] >= '0' && text_[after] <= '9')
@@ -123,7 +123,7 @@ private:
 
     /// Reads what follows the faces of a mesh, to its end.
     void check_parts(std::size_t faces) {
-        for (DirectxToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
+        for (TextToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
             if (token.text.empty()) tokens_.refuse(token.line, "the mesh does not end: the file is cut");
             if (token.text == ";" || token.text == ",") continue;
             if (token.text == "MeshMaterialList") {
@@ -131,7 +131,8 @@ private:
                 check_materials(faces);
             } else {
                 if (token.text == "XSkinMeshHeader") left_out_.add("deformations of skins");
-                if (token.text == "{") tokens_.refuse(token.line, "a reference in a mesh is not read; export the object in its place");
+                if (token.text == "{")
+                    tokens_.refuse(token.line, "a reference in a mesh is not read; export the object in its place");
                 skip_other(token);
             }
         }
@@ -146,7 +147,7 @@ private:
             if (index >= largest) largest = index, line = tokens_.peek().line;
         }
         std::size_t materials = 0;
-        for (DirectxToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
+        for (TextToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
             if (token.text.empty()) tokens_.refuse(token.line, "the list of materials does not end: the file is cut");
             if (token.text == "{") {
                 ++materials;
@@ -158,15 +159,16 @@ private:
             }
         }
         if (faces > 0 && indices > 0 && largest >= std::max<std::size_t>(materials, 1)) {
-            tokens_.refuse(line, fmt::format("a face has material {}, but the mesh has {} materials; its faces would be lost",
-                                             largest, materials));
+            tokens_.refuse(line,
+                           fmt::format("a face has material {}, but the mesh has {} materials; its faces would be lost",
+                                       largest, materials));
         }
     }
 
     /// Skips another object, with all that is in it.
-    void skip_other(const DirectxToken& type) {
+    void skip_other(const TextToken& type) {
         bool meshes = false;
-        DirectxToken token = tokens_.next();
+        TextToken token = tokens_.next();
         while (token.text != "{" && !token.text.empty()) token = tokens_.next();
         for (std::size_t depth = 1; depth > 0;) {
             token = tokens_.next();
@@ -177,7 +179,8 @@ private:
             meshes |= token.text == "Mesh";
         }
         const bool patches = type.text.find("PatchMesh") != std::string_view::npos;
-        if (type.text != "template" && (meshes || patches)) left_out_.add(fmt::format("objects of type {}", shown(type.text)));
+        if (type.text != "template" && (meshes || patches))
+            left_out_.add(fmt::format("objects of type {}", shown(type.text)));
     }
 
     std::string corrected() const {
@@ -193,7 +196,7 @@ private:
     }
 
     std::string_view text_;
-    DirectxTokens tokens_;
+    TextTokens tokens_;
     Frame file_;
     std::size_t depth_ = 0;
     LeftOut left_out_;

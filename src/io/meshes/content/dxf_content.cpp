@@ -26,8 +26,8 @@ enum VertexFlag : int { frame_control = 16, mesh_vertex = 64, face_record = 128 
 
 bool has_surfaces(std::string_view type) {
     constexpr std::array<std::string_view, 13> surfaces = {
-        "3DSOLID",          "BODY",         "REGION",       "SURFACE",     "EXTRUDEDSURFACE", "LOFTEDSURFACE", "REVOLVEDSURFACE",
-        "SWEPTSURFACE",     "PLANESURFACE", "NURBSURFACE",  "MESH",        "SOLID",           "TRACE"};
+        "3DSOLID",      "BODY",         "REGION",      "SURFACE", "EXTRUDEDSURFACE", "LOFTEDSURFACE", "REVOLVEDSURFACE",
+        "SWEPTSURFACE", "PLANESURFACE", "NURBSURFACE", "MESH",    "SOLID",           "TRACE"};
     return std::find(surfaces.begin(), surfaces.end(), type) != surfaces.end();
 }
 
@@ -104,7 +104,8 @@ private:
     }
 
     void add_entity(const DxfEntity& entity, std::span<const DxfEntity> vertices, const DxfTransform& transform) {
-        if (out_.size() > max_bytes) refuse(path_, fmt::format("line {}: the inserted blocks are more than 2 GiB", entity.line));
+        if (out_.size() > max_bytes)
+            refuse(path_, fmt::format("line {}: the inserted blocks are more than 2 GiB", entity.line));
         if (entity.type == "3DFACE") {
             add_face(entity, transform);
         } else if (entity.type == "LINE" || entity.type == "3DLINE") {
@@ -127,7 +128,8 @@ private:
     }
 
     /// Adds the edges of a line, or its faces if it has a thickness. `own`: from the coordinates of the points to those of the block.
-    void add_line(const DxfEntity& entity, const DxfPoints& points, const DxfTransform& own, const DxfTransform& transform) {
+    void add_line(const DxfEntity& entity, const DxfPoints& points, const DxfTransform& own,
+                  const DxfTransform& transform) {
         const double thickness = entity.number(39, 0, path_);
         const DxfTransform up = DxfTransform::from_entity(entity.point(210, {0, 0, 1}, path_));
         const DxfPoint rise = up * DxfPoint{0, 0, thickness};
@@ -153,7 +155,8 @@ private:
         if ((flags & grid) != 0) return add_grid(entity, points, transform);
         if ((flags & closed) != 0 && points.size() > 1) points.push_back(points.front());
         const bool flat = (flags & in_space) == 0;
-        add_line(entity, points, flat ? DxfTransform::from_entity(entity.point(210, {0, 0, 1}, path_)) : DxfTransform(), transform);
+        add_line(entity, points, flat ? DxfTransform::from_entity(entity.point(210, {0, 0, 1}, path_)) : DxfTransform(),
+                 transform);
     }
 
     void add_polyface(const DxfEntity& entity, std::span<const DxfEntity> vertices, const DxfTransform& transform) {
@@ -168,8 +171,8 @@ private:
                 const int index = std::abs(vertex.whole(code, 0, path_));
                 if (index == 0) continue;
                 if (std::size_t(index) > points.size()) {
-                    refuse(path_, fmt::format("line {}: a face refers to vertex {}, but the mesh has {} vertices", vertex.line,
-                                              index, points.size()));
+                    refuse(path_, fmt::format("line {}: a face refers to vertex {}, but the mesh has {} vertices",
+                                              vertex.line, index, points.size()));
                 }
                 corners.push_back(points[std::size_t(index) - 1]);
             }
@@ -188,15 +191,17 @@ private:
         const auto m = std::size_t(std::max(0, entity.whole(smooth ? 73 : 71, 0, path_)));
         const auto n = std::size_t(std::max(0, entity.whole(smooth ? 74 : 72, 0, path_)));
         if (m * n != points.size())
-            refuse(path_, fmt::format("line {}: the mesh has {} points in place of {} times {}", entity.line, points.size(), m, n));
+            refuse(path_, fmt::format("line {}: the mesh has {} points in place of {} times {}", entity.line,
+                                      points.size(), m, n));
         const int flags = entity.whole(70, 0, path_);
         const std::size_t rows = (flags & closed) != 0 ? m : m - std::min<std::size_t>(m, 1);
         const std::size_t columns = (flags & closed_along_n) != 0 ? n : n - std::min<std::size_t>(n, 1);
         for (std::size_t i = 0; i < rows; ++i) {
             for (std::size_t j = 0; j < columns; ++j) {
                 const std::size_t next = (i + 1) % m, beside = (j + 1) % n;
-                out_.add(entity.text(8), std::array{transform * points[i * n + j], transform * points[i * n + beside],
-                                                    transform * points[next * n + beside], transform * points[next * n + j]});
+                out_.add(entity.text(8),
+                         std::array{transform * points[i * n + j], transform * points[i * n + beside],
+                                    transform * points[next * n + beside], transform * points[next * n + j]});
             }
         }
     }
@@ -204,7 +209,8 @@ private:
     void add_insert(const DxfEntity& insert, const DxfPlace& place) {
         const std::string_view name = insert.text(2);
         const auto found = file_.blocks.find(name);
-        if (found == file_.blocks.end()) return left_out_.add(fmt::format("inserts of block '{}', which the file does not have", name));
+        if (found == file_.blocks.end())
+            return left_out_.add(fmt::format("inserts of block '{}', which the file does not have", name));
         if (std::find(place.blocks.begin(), place.blocks.end(), name) != place.blocks.end())
             refuse(path_, fmt::format("line {}: the block '{}' is inserted in itself", insert.line, shown(name)));
         const DxfBlock& block = found->second;
@@ -219,7 +225,8 @@ private:
         next.blocks.push_back(name);
         for (int row = 0; row < std::max(1, insert.whole(71, 1, path_)); ++row) {
             for (int column = 0; column < std::max(1, insert.whole(70, 1, path_)); ++column) {
-                if (++copies_ > max_copies) refuse(path_, fmt::format("line {}: more than {} blocks are inserted", insert.line, max_copies));
+                if (++copies_ > max_copies)
+                    refuse(path_, fmt::format("line {}: more than {} blocks are inserted", insert.line, max_copies));
                 const DxfPoint step = {column * insert.number(44, 0, path_), row * insert.number(45, 0, path_), 0};
                 next.transform = outer * DxfTransform::move(step) * inner;
                 add_entities(block.entities, next);

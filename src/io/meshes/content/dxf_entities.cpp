@@ -110,7 +110,8 @@ private:
 }  // namespace
 
 std::string_view DxfEntity::text(int code) const {
-    const auto found = std::find_if(groups.begin(), groups.end(), [&](const DxfGroup& group) { return group.code == code; });
+    const auto found =
+        std::find_if(groups.begin(), groups.end(), [&](const DxfGroup& group) { return group.code == code; });
     return found == groups.end() ? std::string_view() : found->value;
 }
 
@@ -122,14 +123,16 @@ double DxfEntity::number(int code, double otherwise, const std::string& path) co
     if (!has(code)) return otherwise;
     const NumberList list = numbers_with_commas_of(text(code));
     if (list.numbers.size() != 1)
-        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is no number", line, type, shown(text(code)), code));
+        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is no number", line, type, shown(text(code)),
+                                 code));
     return list.numbers[0];
 }
 
 int DxfEntity::whole(int code, int otherwise, const std::string& path) const {
     const double value = number(code, otherwise, path);
     if (!(std::abs(value) < 1e9))
-        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is too large", line, type, shown(text(code)), code));
+        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is too large", line, type, shown(text(code)),
+                                 code));
     return int(value);
 }
 

@@ -9,10 +9,13 @@
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/meshes/content/ac3d_content.hpp"
 #include "io/meshes/content/amf_content.hpp"
 #include "io/meshes/content/collada_content.hpp"
 #include "io/meshes/content/directx_content.hpp"
 #include "io/meshes/content/dxf_content.hpp"
+#include "io/meshes/content/irrlicht_content.hpp"
+#include "io/meshes/content/opengex_content.hpp"
 #include "io/meshes/content/x3d_content.hpp"
 #include "io/meshes/content/xgl_content.hpp"
 #include "io/meshes/content/xml_tree.hpp"
@@ -33,11 +36,15 @@ struct ContentCheck {
 };
 
 constexpr auto checks = std::to_array<ContentCheck>({
+    {".ac", &correct_ac3d},
+    {".ac3d", &correct_ac3d},
+    {".acc", &correct_ac3d},
     {".amf", &correct_amf},
     {".dae", &correct_collada},
+    {".ogex", &check_opengex},
     {".x", &correct_directx},
     {".dxf", &correct_dxf},
-    {".irr", &check_xml},
+    {".irr", &check_irrlicht},
     {".irrmesh", &check_xml},
     {".x3d", &correct_x3d},
     {".xgl", &correct_xgl},

@@ -1,4 +1,5 @@
 // What the text of a mesh file says, before Assimp reads it.
+// Start here to change what is done about faults of Assimp.
 //
 // A check of a format finds what Assimp reads wrongly. It writes the content in a form that Assimp reads rightly, refuses the file, or counts
 // what is left out.

@@ -40,7 +40,8 @@ constexpr auto groups = std::to_array<std::pair<std::string_view, std::string_vi
 });
 
 std::string_view group_name(std::string_view name) {
-    const auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == name; });
+    const auto found =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.first == name; });
     return found == groups.end() ? std::string_view() : found->second;
 }
 
@@ -133,7 +134,8 @@ private:
     }
 
     void write_transform(const XmlElement& node) {
-        for (const std::string_view name : {"center"sv, "scale"sv, "translation"sv}) write_x3d_numbers(node, name, 3, out_);
+        for (const std::string_view name : {"center"sv, "scale"sv, "translation"sv})
+            write_x3d_numbers(node, name, 3, out_);
         for (const std::string_view name : {"rotation"sv, "scaleOrientation"sv}) {
             if (node.attribute(name)) out_.attribute(name, x3d_text(rotation_of(node, name)));
         }
@@ -142,8 +144,7 @@ private:
     /// Returns an axis of length 1, and an angle.
     static std::vector<double> rotation_of(const XmlElement& node, std::string_view name) {
         std::vector<double> rotation = x3d_numbers(node, name);
-        if (rotation.size() != 4)
-            node.refuse(fmt::format("{} has {} numbers in place of 4", name, rotation.size()));
+        if (rotation.size() != 4) node.refuse(fmt::format("{} has {} numbers in place of 4", name, rotation.size()));
         const double length = std::hypot(rotation[0], rotation[1], rotation[2]);
         if (rotation[3] == 0) return {0, 0, 1, 0};
         if (!(length > 0) || !std::isfinite(length)) node.refuse(fmt::format("{} has no axis", name));

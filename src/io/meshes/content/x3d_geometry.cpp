@@ -48,7 +48,8 @@ std::vector<double> points_of(const XmlElement& node, const X3dResolve& resolve)
     if (node.children().empty()) return {};
     for (const XmlElement& child : node.children()) {
         if (child.name().find("Coordinate") != std::string_view::npos && !child.name().starts_with("Texture"))
-            node.refuse(fmt::format("has its points in a {}, which octopair does not read; export a Coordinate", child.name()));
+            node.refuse(
+                fmt::format("has its points in a {}, which octopair does not read; export a Coordinate", child.name()));
     }
     return {};
 }
@@ -146,9 +147,9 @@ std::optional<CornerList> set_faces(const XmlElement& node, std::size_t points) 
 }
 
 bool write_set(const XmlElement& node, const X3dResolve& resolve, XmlWriter& out) {
-    constexpr std::array sets = {"IndexedFaceSet"sv,          "IndexedTriangleSet"sv, "IndexedTriangleStripSet"sv,
-                                 "IndexedTriangleFanSet"sv,   "IndexedQuadSet"sv,     "TriangleSet"sv,
-                                 "TriangleStripSet"sv,        "TriangleFanSet"sv,     "QuadSet"sv};
+    constexpr std::array sets = {"IndexedFaceSet"sv,        "IndexedTriangleSet"sv, "IndexedTriangleStripSet"sv,
+                                 "IndexedTriangleFanSet"sv, "IndexedQuadSet"sv,     "TriangleSet"sv,
+                                 "TriangleStripSet"sv,      "TriangleFanSet"sv,     "QuadSet"sv};
     if (std::find(sets.begin(), sets.end(), node.name()) == sets.end()) return false;
     const std::vector<double> points = points_of(node, resolve);
     const auto faces = set_faces(node, points.size() / 3);
@@ -170,9 +171,8 @@ bool write_lines(const XmlElement& node, const X3dResolve& resolve, XmlWriter& o
         check_corners(node, "coordIndex", corners, points.size() / 3);
         for (const auto& run : runs_of(corners)) append_line(run);
     } else if (node.name() == "LineSet") {
-        for_each_run(node, "vertexCount", points.size() / 3, [&](std::size_t first, std::size_t count) {
-            append_line(ascending(first, count));
-        });
+        for_each_run(node, "vertexCount", points.size() / 3,
+                     [&](std::size_t first, std::size_t count) { append_line(ascending(first, count)); });
     } else {
         append_faces(ascending(0, points.size() / 3), 1, faces);
     }
@@ -307,8 +307,8 @@ constexpr auto plain_types = std::to_array<PlainType>({
 });
 
 bool write_plain(const XmlElement& node, XmlWriter& out) {
-    const auto found =
-        std::find_if(plain_types.begin(), plain_types.end(), [&](const PlainType& type) { return type.name == node.name(); });
+    const auto found = std::find_if(plain_types.begin(), plain_types.end(),
+                                    [&](const PlainType& type) { return type.name == node.name(); });
     if (found == plain_types.end()) return false;
     out.open(node.name());
     std::string_view numbers = found->numbers;

@@ -225,7 +225,8 @@ private:
         out_.close();
     }
 
-    void write_face(const XmlElement& face, std::string_view type, std::size_t corners, const std::map<std::string, std::size_t>& numbers) {
+    void write_face(const XmlElement& face, std::string_view type, std::size_t corners,
+                    const std::map<std::string, std::size_t>& numbers) {
         out_.open(type);
         write_reference("MATREF", 0);
         for (std::size_t k = 1; k <= corners; ++k) {
@@ -235,7 +236,8 @@ private:
             const auto reference = child_called(*corner, "PREF");
             if (!reference) corner->refuse("has no <PREF>");
             const auto found = numbers.find(std::string(word_in(*reference)));
-            if (found == numbers.end()) reference->refuse(fmt::format("the point '{}' is not in the mesh", shown(word_in(*reference))));
+            if (found == numbers.end())
+                reference->refuse(fmt::format("the point '{}' is not in the mesh", shown(word_in(*reference))));
             out_.open(name);
             write_reference("PREF", found->second);
             out_.close();

@@ -1,4 +1,4 @@
-// DirectxTokens: the words of a DirectX text.
+// TextTokens: the words of a text with structures in braces, such as DirectX and OpenGEX.
 #pragma once
 
 #include <string>
@@ -6,20 +6,22 @@
 
 namespace octopair::io {
 
-struct DirectxToken {
-    std::string_view text;   ///< a name, number or string, or one of { } ; , and empty at the end
+struct TextToken {
+    std::string_view text;   ///< a name, number or string, or a mark; empty at the end
     std::size_t line = 0;    ///< from 1
     std::size_t offset = 0;  ///< of its first byte in the file
 };
 
-class DirectxTokens {
+class TextTokens {
 public:
-    /// Requires: `text` outlives this object. `path` is for messages.
-    DirectxTokens(std::string path, std::string_view text) : path_(std::move(path)), text_(text) {}
+    /// `marks`: characters that are tokens of their own. `comment`: a character that begins a comment, besides // and /*.
+    /// Requires: `text` and `marks` outlive this object. `path` is for messages.
+    TextTokens(std::string path, std::string_view text, std::string_view marks, char comment = '\0')
+        : path_(std::move(path)), text_(text), marks_(marks), comment_(comment) {}
 
-    DirectxToken next();
+    TextToken next();
     /// Returns the next token, which stays.
-    DirectxToken peek();
+    TextToken peek();
     /// Returns the next number. Semicolons and commas before it are skipped.
     /// Throws: Error{bad_input} with the line if another token follows.
     double number();
@@ -33,7 +35,8 @@ private:
     void skip_to_token();
 
     std::string path_;
-    std::string_view text_;
+    std::string_view text_, marks_;
+    char comment_;
     std::size_t at_ = 0, line_ = 1;
 };
 

@@ -1,4 +1,4 @@
-#include "io/meshes/content/directx_tokens.hpp"
+#include "io/meshes/content/text_tokens.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +12,21 @@ namespace octopair::io {
 
 namespace {
 
-constexpr std::string_view directx_white = " \t\r\n\f\v", directx_marks = "{};,";
+constexpr std::string_view token_white = " \t\r\n\f\v";
 
 }  // namespace
 
-void DirectxTokens::skip_to_token() {
+void TextTokens::skip_to_token() {
     while (at_ < text_.size()) {
         if (text_[at_] == '\n') ++line_;
-        if (text_[at_] == '#' || text_.substr(at_, 2) == "//") {
+        if ((comment_ != '\0' && text_[at_] == comment_) || text_.substr(at_, 2) == "//") {
             at_ = std::min(text_.find('\n', at_), text_.size());
-        } else if (directx_white.find(text_[at_]) != std::string_view::npos || text_[at_] == '\0') {
+        } else if (text_.substr(at_, 2) == "/*") {
+            const std::size_t end = std::min(text_.find("*/", at_ + 2), text_.size() - 2) + 2;
+            line_ +=
+                std::size_t(std::count(text_.begin() + std::ptrdiff_t(at_), text_.begin() + std::ptrdiff_t(end), '\n'));
+            at_ = end;
+        } else if (token_white.find(text_[at_]) != std::string_view::npos || text_[at_] == '\0') {
             ++at_;
         } else {
             return;
@@ -29,16 +34,16 @@ void DirectxTokens::skip_to_token() {
     }
 }
 
-DirectxToken DirectxTokens::next() {
+TextToken TextTokens::next() {
     skip_to_token();
-    DirectxToken token{{}, line_, at_};
+    TextToken token{{}, line_, at_};
     if (at_ == text_.size()) return token;
     std::size_t end = at_ + 1;
     if (text_[at_] == '"') {
         end = std::min(text_.find('"', end), text_.size() - 1) + 1;
-    } else if (directx_marks.find(text_[at_]) == std::string_view::npos) {
-        while (end < text_.size() && directx_white.find(text_[end]) == std::string_view::npos &&
-               directx_marks.find(text_[end]) == std::string_view::npos)
+    } else if (marks_.find(text_[at_]) == std::string_view::npos) {
+        while (end < text_.size() && token_white.find(text_[end]) == std::string_view::npos &&
+               marks_.find(text_[end]) == std::string_view::npos)
             ++end;
     }
     token.text = text_.substr(at_, end - at_);
@@ -47,31 +52,31 @@ DirectxToken DirectxTokens::next() {
     return token;
 }
 
-DirectxToken DirectxTokens::peek() {
+TextToken TextTokens::peek() {
     const std::size_t at = at_, line = line_;
-    const DirectxToken token = next();
+    const TextToken token = next();
     at_ = at;
     line_ = line;
     return token;
 }
 
-double DirectxTokens::number() {
-    DirectxToken token = next();
+double TextTokens::number() {
+    TextToken token = next();
     while (token.text == ";" || token.text == ",") token = next();
     const auto number = number_of_word(token.text);
     if (!number) refuse(token.line, fmt::format("'{}' is in the place of a number", shown(token.text)));
     return *number;
 }
 
-std::size_t DirectxTokens::count() {
-    const DirectxToken token = peek();
+std::size_t TextTokens::count() {
+    const TextToken token = peek();
     const double value = number();
     if (!(value >= 0) || value > 1e15 || value != std::floor(value))
         refuse(token.line, fmt::format("{} is in the place of a whole number", number_text(value)));
     return std::size_t(value);
 }
 
-void DirectxTokens::refuse(std::size_t line, std::string_view what) const {
+void TextTokens::refuse(std::size_t line, std::string_view what) const {
     io::refuse(path_, fmt::format("line {}: {}", line, what));
 }
 
