@@ -20,9 +20,9 @@ struct Ac3dObject {
     std::size_t line = 0;
     std::size_t vertices = 0;
     bool moved = false, turned = false, lines = false, surfaces = false;
-    std::vector<double> place;                     // loc
-    std::string_view place_line;                   // the text after loc
-    std::vector<std::string_view> vertex_lines{};  // with three numbers each
+    std::vector<double> place;                   // loc
+    std::string_view place_line;                 // the text after loc
+    std::vector<std::string_view> vertex_lines;  // with three numbers each
 };
 
 class Ac3dCheck {
@@ -48,7 +48,7 @@ private:
     void check_line(std::string_view line) {
         const std::string_view word = take_list_word(line);
         if (word == "MATERIAL") ++materials_;
-        if (word == "OBJECT") object_ = {.line = line_};
+        if (word == "OBJECT") begin_object();
         if (word == "loc") set_place(line);
         if (word == "rot") object_.turned = has_other(numbers_of(line).numbers, {1, 0, 0, 0, 1, 0, 0, 0, 1});
         if (word == "data") skip_data(whole(line));
@@ -80,6 +80,11 @@ private:
         unsigned flags = 0;
         std::from_chars(word.data(), word.data() + word.size(), flags, base);
         return (flags & 0xF) == 1 || (flags & 0xF) == 2;
+    }
+
+    void begin_object() {
+        object_ = {};
+        object_.line = line_;
     }
 
     void set_place(std::string_view line) {

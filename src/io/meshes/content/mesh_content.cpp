@@ -56,6 +56,7 @@ constexpr auto checks = std::to_array<ContentCheck>({
 
 std::vector<std::string> LeftOut::list() const {
     std::vector<std::string> texts;
+    texts.reserve(counts_.size());
     for (const auto& [what, count] : counts_) texts.push_back(fmt::format("{} ({})", what, count));
     return texts;
 }

@@ -199,7 +199,7 @@ private:
         namespace fs = std::filesystem;
         std::string_view urls = node.attribute("url").value_or("");
         for (auto url = take_list_word(urls, ",\"'"); !url.empty(); url = take_list_word(urls, ",\"'")) {
-            const std::string path = (fs::path(tree_.path()).parent_path() / std::string(url)).string();
+            std::string path = (fs::path(tree_.path()).parent_path() / std::string(url)).string();
             std::error_code ignored;
             if (fs::is_regular_file(path, ignored)) return path;
         }

@@ -248,7 +248,9 @@ void write_grid(const XmlElement& node, XmlWriter& out) {
     std::vector<double> points;
     CornerList faces;
     for (std::size_t i = 0; i < heights.size(); ++i) {
-        const auto column = double(i % std::size_t(columns)), row = double(i / std::size_t(columns));
+        const auto width = std::size_t(columns);
+        const std::size_t in_row = i % width, row_number = i / width;
+        const auto column = double(in_row), row = double(row_number);
         points.insert(points.end(), {x * column, heights[i], z * row});
         if (column + 1 < columns && row + 1 < rows) {
             const auto at = double(i);
