@@ -144,9 +144,9 @@ TEST(DxfContent, UncommonFaultsAreRefused) {
     EXPECT_EQ(refusal("0\nPOLYLINE\n70\n16\n71\n2\n72\n2\n0\nVERTEX\n10\n0\n0\nSEQEND\n"),
               "line 12: the mesh has 1 points in place of 2 times 2");
     EXPECT_EQ(refusal(dxf_insert("A", "70\n1e10\n"), dxf_block("A", one_face)),
-              "line 60: INSERT has '1e10' as group 70, which is too large");
+              "line 58: INSERT has '1e10' as group 70, which is too large");
     EXPECT_EQ(refusal(dxf_insert("A", "70\n4000\n71\n4000\n"), dxf_block("A", "")),
-              "line 28: more than 10000000 blocks are inserted");
+              "line 30: more than 10000000 blocks are inserted");
 }
 
 TEST(DxfContent, ArcsAndReferencesAreCounted) {

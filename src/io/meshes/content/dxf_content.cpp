@@ -223,10 +223,12 @@ private:
         const DxfTransform inner = DxfTransform::scale(scale) * DxfTransform::move({-base[0], -base[1], -base[2]});
         DxfPlace next = place;
         next.blocks.push_back(name);
-        for (int row = 0; row < std::max(1, insert.whole(71, 1, path_)); ++row) {
-            for (int column = 0; column < std::max(1, insert.whole(70, 1, path_)); ++column) {
-                if (++copies_ > max_copies)
-                    refuse(path_, fmt::format("line {}: more than {} blocks are inserted", insert.line, max_copies));
+        const int rows = std::max(1, insert.whole(71, 1, path_)), columns = std::max(1, insert.whole(70, 1, path_));
+        copies_ += double(rows) * columns;
+        if (copies_ > max_copies)
+            refuse(path_, fmt::format("line {}: more than {} blocks are inserted", insert.line, max_copies));
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column) {
                 const DxfPoint step = {column * insert.number(44, 0, path_), row * insert.number(45, 0, path_), 0};
                 next.transform = outer * DxfTransform::move(step) * inner;
                 add_entities(block.entities, next);
@@ -234,13 +236,14 @@ private:
         }
     }
 
-    static constexpr std::size_t max_bytes = std::size_t(1) << 31, max_copies = 10'000'000;
+    static constexpr std::size_t max_bytes = std::size_t(1) << 31;
+    static constexpr double max_copies = 1e7;
 
     const std::string& path_;
     const DxfFile& file_;
     DxfWriter out_;
     LeftOut left_out_;
-    std::size_t copies_ = 0;  // of blocks
+    double copies_ = 0;  // of blocks
 };
 
 }  // namespace
