@@ -73,6 +73,7 @@ TEST(DirectxContent, FaultsAreRefusedWithTheirLines) {
 }
 
 TEST(DirectxContent, UncommonFaultsAreRefused) {
+    EXPECT_NE(refusal_of_text(".x", "xof 03"), "");
     EXPECT_EQ(refusal_of_x("Mesh a b {\n"), "line 2: 'Mesh' without a brace");
     EXPECT_EQ(refusal_of_x("Frame {\nFrameTransformMatrix {\n1,0"), "line 4: the matrix does not end");
     EXPECT_EQ(refusal_of_x(x_mesh().substr(0, x_mesh().size() - 2)), "line 11: the mesh does not end: the file is cut");

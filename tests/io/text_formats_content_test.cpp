@@ -69,6 +69,8 @@ TEST(Ac3dContent, WhatAssimpReadsRightlyIsAccepted) {
 }
 
 TEST(Ac3dContent, LinesAreMovedToTheirPlaces) {
+    const std::string lines = "SURF 0x22\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\n";
+    EXPECT_EQ(import_text(".ac", ac_of("loc 10 20 30\n", lines, "kids 0\nkids 0\n")).objects.size(), 1u);
     EXPECT_EQ(boxes_named(
                   import_text(".ac", ac_of("loc 10 20 30\n", "SURF 0x22\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\n")), "p"),
               Texts{"10 20 30 11 22 34"});

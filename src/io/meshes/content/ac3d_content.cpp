@@ -141,6 +141,7 @@ private:
                        object_.line, object_.turned ? "a rotation (rot)" : "children"));
         }
         if (in_place && object_.lines) move_vertices();
+        begin_object();  // so that a second line "kids" has no effect
     }
 
     /// Moves the vertices of an object to their places.

@@ -206,7 +206,7 @@ private:
 }  // namespace
 
 MeshContent correct_directx(const std::string& path, std::string_view bytes) {
-    if (!bytes.starts_with("xof ") || bytes.substr(8, 3) != "txt") return {};
+    if (!bytes.starts_with("xof ") || bytes.size() < header_bytes || bytes.substr(8, 3) != "txt") return {};
     return DirectxCheck(path, bytes).check();
 }
 
