@@ -210,7 +210,7 @@ private:
         const std::string_view name = insert.text(2);
         const auto found = file_.blocks.find(name);
         if (found == file_.blocks.end())
-            return left_out_.add(fmt::format("inserts of block '{}', which the file does not have", name));
+            return left_out_.add(fmt::format("inserts of block '{}', which the file does not have", shown(name)));
         if (std::find(place.blocks.begin(), place.blocks.end(), name) != place.blocks.end())
             refuse(path_, fmt::format("line {}: the block '{}' is inserted in itself", insert.line, shown(name)));
         const DxfBlock& block = found->second;

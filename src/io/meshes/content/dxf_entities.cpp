@@ -123,16 +123,16 @@ double DxfEntity::number(int code, double otherwise, const std::string& path) co
     if (!has(code)) return otherwise;
     const NumberList list = numbers_with_commas_of(text(code));
     if (list.numbers.size() != 1)
-        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is no number", line, type, shown(text(code)),
-                                 code));
+        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is no number", line, shown(type),
+                                 shown(text(code)), code));
     return list.numbers[0];
 }
 
 int DxfEntity::whole(int code, int otherwise, const std::string& path) const {
     const double value = number(code, otherwise, path);
     if (!(std::abs(value) < 1e9))
-        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is too large", line, type, shown(text(code)),
-                                 code));
+        refuse(path, fmt::format("line {}: {} has '{}' as group {}, which is too large", line, shown(type),
+                                 shown(text(code)), code));
     return int(value);
 }
 
