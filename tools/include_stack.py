@@ -107,7 +107,7 @@ PUBLIC = {
 THIRD_PARTY = {
     "tbb": {"parallel", "bench/baselines"}, "oneapi": {"parallel"},
     "hwy": {"boxes", "octree", "engine/mpi", "scene", "narrow_phase"},
-    "assimp": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase", "viewer"}, "zlib.h": {"io", "viewer"},
+    "assimp": {"io"}, "expat.h": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase", "viewer"}, "zlib.h": {"io", "viewer"},
     "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
     "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"}, "systemd": {"cli"},
     "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "viewer", "cli", "bench"},
