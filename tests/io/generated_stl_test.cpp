@@ -15,6 +15,13 @@ void add_corner(io::PlainMesh& mesh, const Point3d& place) {
     mesh.vertices.push_back(place);
 }
 
+/// How a text is divided into lines.
+enum class StlLines : std::uint8_t {
+    own,     ///< each statement begins a line, or follows another
+    broken,  ///< anywhere
+    one,     ///< all is on one line
+};
+
 /// A random STL file: its text or bytes, and what it says.
 struct StlFile {
     Spelling spelling;
@@ -27,9 +34,11 @@ struct StlFile {
             write_binary();
             return;
         }
+        lines = StlLines(spelling.one_in(2) ? 0 : 1 + spelling.below(2));
         bytes = spelling.byte_order_mark() + (spelling.one_in(4) ? spelling.line_end() : "");
         for (std::uint64_t solids = 1 + spelling.below(3); solids > 0; --solids) write_solid();
-        if (spelling.one_in(4)) bytes.resize(bytes.size() - spelling.line_end().size());
+        if (spelling.one_in(4) && bytes.ends_with(spelling.line_end()))
+            bytes.resize(bytes.size() - spelling.line_end().size());
     }
 
     void write_solid() {
@@ -37,24 +46,39 @@ struct StlFile {
         io::PlainMesh& mesh = meshes.emplace_back();
         mesh.name = spelling.pick({"", "a part", "facet#1", "K\xc3\xb6rper"});
         bytes += spelling.indent() + word("solid") + (mesh.name.empty() ? "" : spelling.blank()) + mesh.name;
-        bytes += spelling.line_end();
-        for (std::uint64_t facets = spelling.below(4); facets > 0; --facets) write_facet(mesh);
+        std::uint64_t facets = spelling.below(4);
+        if (lines == StlLines::one && mesh.name.empty()) ++facets;  // "solid endsolid" would be a solid with a name
+        bytes += lines == StlLines::one ? spelling.blank() : spelling.line_end();
+        for (; facets > 0; --facets) write_facet(mesh);
         end("solid");
-        bytes += spelling.blank() + mesh.name + spelling.line_end();
+        bytes += spelling.blank() + mesh.name;
+        bytes += lines == StlLines::one ? spelling.blank() : spelling.line_end();
     }
 
     void write_facet(io::PlainMesh& mesh) {
-        if (spelling.one_in(8)) bytes += word("color") + " 0.5 0.5 1" + spelling.line_end();
-        bytes += word("facet") + spelling.blank() + word("normal") +
-                 spelling.pick({" 0 0 1", " nan nan nan", " -1e0 0. +.5"});
+        if (lines != StlLines::one && spelling.one_in(8)) bytes += word("color") + " 0.5 0.5 1" + spelling.line_end();
+        bytes += word("facet");
+        write_space();
+        bytes += word("normal");
+        const std::string number = spelling.pick({"0", "nan", "-1e0", "+.5", "-nan(ind)", "1.#QNAN"});
+        for (int i = 0; i < 3; ++i) {
+            write_space();
+            bytes += number;
+        }
         separate();
-        bytes += word("outer") + spelling.blank() + word("loop");
+        bytes += word("outer");
+        write_space();
+        bytes += word("loop");
         separate();
         for (int corner = 0; corner < 3; ++corner) write_vertex(mesh);
         end("loop");
         separate();
         end("facet");
-        bytes += spelling.line_end();
+        if (lines == StlLines::own) {
+            bytes += spelling.line_end();
+        } else {
+            separate();
+        }
         mesh.end_face();
     }
 
@@ -63,7 +87,8 @@ struct StlFile {
         Point3d place;
         for (double& at : place) {
             const SpelledNumber number = spelling.spelled();
-            bytes += spelling.blank() + number.text;
+            write_space();
+            bytes += number.text;
             at = number.value;
         }
         add_corner(mesh, place);
@@ -72,8 +97,15 @@ struct StlFile {
 
     std::string word(const char* text) { return spelling.in_case(text, capitals); }
     void end(const char* what) { bytes += word("end") + (spelling.one_in(6) ? spelling.blank() : "") + word(what); }
+    /// Writes what separates statements.
     void separate() {
-        bytes += spelling.one_in(6) ? spelling.blank() : spelling.indent() + spelling.line_end() + spelling.indent();
+        const bool in_line = lines == StlLines::one || spelling.one_in(6);
+        bytes += in_line ? spelling.blank() : spelling.indent() + spelling.line_end() + spelling.indent();
+    }
+    /// Writes what separates the words of a statement.
+    void write_space() {
+        const bool in_line = lines != StlLines::broken || !spelling.one_in(3);
+        bytes += in_line ? spelling.blank() : spelling.indent() + spelling.line_end() + spelling.indent();
     }
 
     void append(std::uint32_t value) {
@@ -112,6 +144,7 @@ struct StlFile {
     }
 
     bool capitals = false;
+    StlLines lines = StlLines::own;
 };
 
 TEST(GeneratedFiles, OfStlAreReadAsTheyAreWritten) {
@@ -120,7 +153,9 @@ TEST(GeneratedFiles, OfStlAreReadAsTheyAreWritten) {
         const std::uint64_t seed = case_seed("stl", i);
         StlFile file(seed);
         std::vector<std::string> warnings;
-        const auto meshes = io::parse_stl({file.bytes, "m.stl", without_stop, {}, &warnings});
+        const auto meshes = read_of_valid(seed, file.bytes, [&] {
+            return io::parse_stl({file.bytes, "m.stl", without_stop, {}, &warnings});
+        });
         ASSERT_EQ(difference(meshes, file.meshes), "") << repetition(seed, file.bytes);
         ASSERT_EQ(warnings.size(), file.warnings) << repetition(seed, file.bytes);
         ASSERT_EQ(meshes[0].rounded, file.meshes[0].rounded);

@@ -9,6 +9,8 @@
 #include <map>
 #include <random>
 
+#include <fmt/format.h>
+
 #include "io/gltf_builder.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
 #include "support/cases.hpp"
@@ -77,7 +79,10 @@ public:
     }
 
     /// Returns the file as text or as GLB.
-    std::string file() { return pick(0, 1) == 0 ? builder_.text() : builder_.glb(); }
+    std::string file() {
+        if (toss()) return builder_.glb();
+        return toss() || builder_.data.empty() ? builder_.text() : builder_.text(data_uri());
+    }
 
     std::vector<ExpectedMesh> meshes;
     std::vector<ExpectedObject> objects;
@@ -87,6 +92,39 @@ private:
         return std::uniform_int_distribution<std::size_t>(least, most)(random_);
     }
     bool toss() { return pick(0, 1) == 1; }
+
+    /// Returns a URI with the data, in one of the spellings that URIs and base64 have.
+    std::string data_uri() {
+        const auto any_of = [&](std::initializer_list<const char*> texts) {
+            return std::string(texts.begin()[pick(0, texts.size() - 1)]);
+        };
+        std::string uri = any_of({"data:", "DATA:", "Data:"}) +
+                          any_of({"", "application/gltf-buffer", "application/octet-stream;charset=utf-8", "x-a/b"});
+        const auto percent = [&](std::uint8_t c) {
+            uri += toss() ? fmt::format("%{:02X}", c) : fmt::format("%{:02x}", c);
+        };
+        if (pick(0, 3) == 0) {
+            uri += ",";
+            for (const char c : builder_.data) percent(std::uint8_t(c));
+            return uri;
+        }
+        uri += any_of({";base64,", ";BASE64,", ";base64 ,", "; base64,"});
+        std::string text = base64(builder_.data);
+        const bool for_urls = toss(), padded = toss(), has_lines = toss(), encoded = toss();
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            char c = text[i];
+            if (c == '=' && !padded) continue;
+            if (for_urls && c == '+') c = '-';
+            if (for_urls && c == '/') c = '_';
+            if (encoded && pick(0, 5) == 0) {
+                percent(std::uint8_t(c));
+            } else {
+                uri += c;
+            }
+            if (has_lines && i % 76 == 75) uri += any_of({"\n", "\r\n", " ", "%0A"});
+        }
+        return uri;
+    }
 
     /// Appends the bytes of a number in a type of glTF. Returns the number that a reader should find.
     double append(std::string& bytes, GltfType type, bool normalized) {
@@ -290,6 +328,7 @@ private:
         json node = json::object();
         const std::size_t index = builder_.node(json());
         if (!place.name.empty()) node["name"] = place.name;
+        if (pick(0, 5) == 0) node["extensions"]["KHR_node_visibility"]["visible"] = toss();
         const Matrix pose = product(above, add_pose(node));
         if (place.has_mesh) {
             node["mesh"] = place.mesh;

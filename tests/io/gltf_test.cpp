@@ -1,6 +1,9 @@
 // Tests the reader of glTF: nodes, names, transforms, copies, extensions, warnings.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "io/gltf_reading.hpp"
@@ -263,7 +266,7 @@ std::vector<std::array<std::uint32_t, 3>> triangles_in_mode(int mode, std::size_
     vertices = std::size_t(box_at(scene).max[0]) + 1;
     const auto& mesh = mesh_of(scene);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) EXPECT_EQ(mesh.vertices[i][0], double(i));
-    EXPECT_EQ(scene.warnings.size(), mode == 1 || mode == 4 ? 1u : 0u);
+    EXPECT_EQ(scene.warnings.size(), std::size_t(mode == 1 || mode == 4) + std::size_t(mode < 4));
     return mesh.triangles;
 }
 
@@ -281,7 +284,7 @@ TEST(Gltf, StripsAndFansAreTriangles) {
     }
     GltfBuilder builder;
     builder.node({{"mesh", builder.mesh(builder.positions({0, 0, 0, 1, 0, 0}), {{"mode", 7}})}});
-    expect_refusal(builder, "meshes[0].primitives[0]: mode: 7 is not a mode of glTF");
+    expect_refusal(builder, "meshes[0].primitives[0]: mode: 7 is not a mode of glTF, which are 0 to 6");
     for (const int mode : {4, 5, 6}) {
         builder.root["meshes"][0]["primitives"][0]["mode"] = mode;
         const LoadedScene scene = scene_of(builder);
@@ -380,6 +383,70 @@ TEST(Gltf, AJsonSceneMayNameAGlbFile) {
               (std::vector<Point3d>{{0, 0, 0}, {50, 0, 0}, {0, 50, 0}, {0, 0, 7}, {100, 0, 7}, {0, 100, 7}}));
     EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {3, 4, 5}}));
     EXPECT_EQ(scene.largest_rounded, 107);
+}
+
+TEST(Gltf, FilesForNewerReadersAreRefused) {
+    GltfBuilder builder;
+    builder.node({{"mesh", builder.triangle()}});
+    builder.root["asset"] = {{"version", "2.1"}, {"minVersion", "2.0"}};
+    EXPECT_EQ(scene_of(builder).objects, 1u);
+    for (const json& least : {json("2.1"), json("3.0"), json(2.5), json("next")}) {
+        builder.root["asset"]["minVersion"] = least;
+        expect_refusal(builder, "f.glb: asset: minVersion: the file needs a reader of glTF ");
+    }
+    builder.root["asset"]["minVersion"] = json::array();
+    expect_refusal(builder, "asset: minVersion: an array, not a string");
+}
+
+TEST(Gltf, HiddenNodesAreReadAndTold) {
+    GltfBuilder builder;
+    const std::size_t mesh = builder.triangle();
+    const json hidden = {{"KHR_node_visibility", {{"visible", false}}}};
+    builder.node({{"mesh", mesh}, {"name", "door"}, {"extensions", hidden}, {"children", {1}}});
+    builder.node({{"mesh", mesh}, {"name", "hinge"}, {"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
+    builder.node({{"mesh", mesh}, {"name", "wall"}, {"extensions", {{"KHR_node_visibility", json::object()}}}});
+    builder.root["extensionsRequired"] = builder.root["extensionsUsed"] = {"KHR_node_visibility"};
+    const LoadedScene scene = scene_of(builder);
+    EXPECT_EQ(scene.names, (Strings{"ROOT/door", "ROOT/door/hinge", "ROOT/wall"}));
+    EXPECT_EQ(scene.warnings,
+              Strings{"f.glb: 2 nodes are not visible (KHR_node_visibility); they are read like all others, "
+                      "because visibility is about pictures. Rules (--exclude) can leave them out"});
+    builder.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = 0;
+    expect_refusal(builder, "f.glb: nodes[0]: KHR_node_visibility: visible: a number, not true or false");
+}
+
+TEST(Gltf, PointsAndLinesAreTold) {
+    GltfBuilder builder;
+    const std::size_t places = builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    builder.node({{"mesh", builder.mesh(places, {{"mode", 0}})}});
+    EXPECT_EQ(scene_of(builder).warnings,
+              Strings{"f.glb: 1 primitive is of points or lines, which have no surface: only "
+                      "boxes contain it, not shapes and triangles"});
+    builder.node({{"mesh", builder.mesh(places, {{"mode", 3}})}});
+    EXPECT_EQ(scene_of(builder).warnings,
+              Strings{"f.glb: 2 primitives are of points or lines, which have no surface: only "
+                      "boxes contain them, not shapes and triangles"});
+}
+
+TEST(Gltf, DataUrisAreReadInAllSpellings) {
+    GltfBuilder builder;
+    const std::size_t places = builder.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, -1e-30F, 5e7F, 2});
+    builder.node({{"mesh", builder.mesh(places, {{"mode", 5}})}});
+    const std::string data = base64(builder.data);
+    std::string for_urls = data, bytes;
+    std::replace(for_urls.begin(), for_urls.end(), '+', '-');
+    std::replace(for_urls.begin(), for_urls.end(), '/', '_');
+    for (const char c : builder.data) bytes += fmt::format("%{:02X}", std::uint8_t(c));
+    const LoadedScene expected = scene_of(builder);
+    for (const std::string& uri : {"data:application/gltf-buffer;base64," + data, "DATA:;BASE64," + data,
+                                   "data:; base64 ," + data, "data:a/b;charset=x;base64," + for_urls,
+                                   "data:;base64," + data.substr(0, 8) + "\r\n " + data.substr(8) + "\n",
+                                   "data:," + bytes, "data:a/b;base64=no," + bytes}) {
+        EXPECT_EQ(mesh_of(scene_of(builder.text(uri))).vertices, mesh_of(expected).vertices) << uri;
+    }
+    expect_part(refusal_of(builder.text("data:application/octet-stream;base64")),
+                "buffers[0]: uri: 'data:application/octet-stream;base64' has no comma");
+    expect_part(refusal_of(builder.text("data:;base64,A" + data)), "is not valid base64");
 }
 
 }  // namespace

@@ -105,7 +105,8 @@ TEST(JsonScene, RefusesWithAClearMessage) {
         {R"({"objects":[7]})", "f.json: object 0: a number, not an object"},
         {R"({"objects":[{"name":"x"}]})", "f.json: object 0 ('x'): the key 'shape' is missing"},
         {R"({"objects":[{"name":7}]})", "f.json: object 0: name: a number, not a string"},
-        {R"({"objects":[{"shape":"x"}]})", "f.json: object 0: shape: no shape has the name 'x'"},
+        {R"({"objects":[{"shape":"x"}]})",
+         "f.json: object 0: shape: no shape has the name 'x'; add it to 'shapes' at the root"},
         {R"({"objects":[{)" + ball + R"(,"place":[0,0,0]}]})",
          "f.json: object 0: unknown key 'place'; known keys: name, shape, position, rotation, "
          "end_position, end_rotation, group, mask, padding, parent"},

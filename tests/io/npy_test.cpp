@@ -288,7 +288,7 @@ TEST_F(Npy, RefusesOtherShapesAndTypes) {
     EXPECT_NE(refusal(npy_of<float>(NpyType::float32, {1, 1, 4}, std::vector<float>(4))), "");
     EXPECT_NE(refusal(npy_of<float>(NpyType::float32, {1, 1, 1, 6}, std::vector<float>(6))), "");
     EXPECT_EQ(refusal(npy_of<std::uint32_t>(NpyType::uint32, {1, 6}, std::vector<std::uint32_t>(6))),
-              "its array is of type '<u4'; '<f4' or '<f8' is needed");
+              "its array is of type '<u4'; '<f4' or '<f8' is needed: save array.astype('<f8')");
     EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1ull << 60, 0, 6}, {})),
               "1152921504606846976 frames; the maximum is 1000000");
 }

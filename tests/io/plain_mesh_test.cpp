@@ -87,10 +87,12 @@ TEST(PlainMesh, ErrorsNameTheLine) {
     EXPECT_EQ(refused("OFF\n1 0 0\n1 2\n"), "m.off: line 3: the line ends where a coordinate should follow");
     EXPECT_EQ(refused("OFF\n1 0 0\n1 2 inf\n"), "m.off: line 3: a coordinate is inf, not a finite number");
     EXPECT_EQ(refused("OFF\n1 0 0\n1 2 1e999\n"), "m.off: line 3: a coordinate is 1e999, not a finite number");
-    EXPECT_EQ(refused("OFF\n2 1 0\n0 0 0\n1 1 1\n3 0 1 2\n"), "m.off: line 5: a corner is 2; at most 1 is possible");
-    EXPECT_EQ(refused("OFF\n2 0 0\n0 0 0\n"), "m.off: ends where a vertex should follow");
+    EXPECT_EQ(refused("OFF\n2 1 0\n0 0 0\n1 1 1\n3 0 1 2\n"),
+              "m.off: line 5: a corner is 2, but at most 1 is possible; save the file again");
+    EXPECT_EQ(refused("OFF\n2 0 0\n0 0 0\n"),
+              "m.off: the file ends after line 3, where a vertex should follow; copy or save it again");
     EXPECT_EQ(refused("OFF\n4000000000 0 0\n"),
-              "m.off: line 2: the number of vertices is 4000000000; at most 4 is possible");
+              "m.off: line 2: the number of vertices is 4000000000, but at most 4 is possible; save the file again");
     EXPECT_EQ(
         refused("4OFF\n"),
         "m.off: line 1: the header is '4OFF'; octopair reads OFF with any of ST, C and N before it, that is with three "
@@ -99,7 +101,7 @@ TEST(PlainMesh, ErrorsNameTheLine) {
     EXPECT_EQ(refused("OFF\n-1 0 0\n"), "m.off: line 2: the number of vertices is '-1', not a number without sign");
     EXPECT_EQ(refused("OFF\n1\n"), "m.off: line 2: the line ends where the number of faces should follow");
     EXPECT_EQ(refused("OFF BINARY\n"), "m.off: line 1: octopair reads OFF files as text only; save it as text");
-    EXPECT_EQ(refused(""), "m.off: ends where the header should follow");
+    EXPECT_EQ(refused(""), "m.off: has no text, but the header is needed");
 }
 
 /// A tetrahedron as PLY, in every encoding. Its first coordinate has the bytes 0x0A at both ends.
@@ -172,30 +174,59 @@ TEST(PlainMesh, PlySaysWhatIsWrong) {
         return error_of(ErrorCode::bad_input, [&] { (void)ply(text); });
     };
     const std::string whole = tetrahedron_ply(true, false, true);
-    EXPECT_EQ(refused(whole.substr(0, whole.size() - 1)), "m.ply: ends in the middle of its elements");
+    EXPECT_EQ(refused(whole.substr(0, whole.size() - 1)),
+              "m.ply: ends at byte 361, in the middle of its elements; copy or save it again");
     EXPECT_EQ(refused("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n"),
-              "m.ply: says that it has 4000000000 elements 'vertex', but it is too short for them");
+              "m.ply: its header says that it has 4000000000 elements 'vertex', but it is too short for them; copy or "
+              "save it again");
     EXPECT_EQ(refused("ply\nformat binary 1.0\n"),
-              "m.ply: line 2: the format is not ascii, binary_little_endian or binary_big_endian");
+              "m.ply: line 2: the format is 'binary', not ascii, binary_little_endian or binary_big_endian");
     EXPECT_EQ(refused("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n"),
-              "m.ply: its vertices have no x, y or z");
+              "m.ply: its header gives vertices no property x, y or z; save it with all three");
     const std::string vertices =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
     const std::string places = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
     const std::string faces = "element face 1\nproperty list uchar int vertex_indices\n";
     for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
-             {"plx\n", "line 1: 'ply' is expected"},
+             {"plx\n", "line 1: a PLY file begins with 'ply', not 'plx'"},
              {"ply\nproperty float x\n", "line 2: a property comes before the first element"},
              {"ply\nelement vertex 1\nproperty real x\n",
               "line 3: a property has the type 'real', not one of PLY: char, uchar, short, ushort, int, uint, float or "
               "double"},
              {"ply\nelement vertex 1\nproperty list float int x\n", "line 3: the length of a list is not an integer"},
-             {vertices + "element face 1\nproperty int a\n" + places + "1\n", "its faces have no list vertex_indices"},
-             {vertices + faces + places + "3 0 1 3\n", "face 0 has the corner 3, but there are 3 vertices"},
-             {vertices + faces + places + "-3 0 1 2\n", "a list has an impossible length"},
+             {vertices + "element face 1\nproperty int a\n" + places + "1\n",
+              "its header gives faces no list 'vertex_indices'; save it with this name for the corners"},
+             {vertices + faces + places + "3 0 1 3\n", "line 13: face 0 has the corner 3, but there are 3 vertices"},
+             {vertices + faces + places + "-3 0 1 2\n", "line 13: a list has the impossible length -3"},
              {vertices + "element tristrips 1\nproperty list int int vertex_indices\n" + places + "3 0 1 2\n",
               "has triangle strips, which octopair does not read; save it with faces"}}) {
         EXPECT_EQ(refused(text), "m.ply: " + why);
+    }
+}
+
+TEST(PlainMesh, CoordinatesBeyondTheirRangeAreRefused) {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const auto refused = [&](const std::string& rest) {
+        return error_of(ErrorCode::bad_input, [&] { (void)ply(head + rest); });
+    };
+    EXPECT_EQ(refused("0 0 0\n1 0 0\n0 1\n5 5 5\n3 0 1 2\n"),
+              "m.ply: vertex 2, which a face uses, has a coordinate that is not finite; repair the mesh");
+    EXPECT_EQ(refused("0 0 0\n1 0 0\n0 1 0\n5 5 nan\n3 0 1 2\n"),
+              "m.ply: line 13: a number is nan, not a finite number");
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("m.obj");
+    write_file(path, "v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(io::read_scene(path, {}).objects, 1u);
+    for (const bool shapes : {false, true}) {
+        EXPECT_EQ(error_of(ErrorCode::bad_input,
+                           [&] {
+                               (void)io::read_scene(path, {io::MeshObjects::triangle, shapes});
+                           }),
+                  path +
+                      ": the coordinate 1e+39 is beyond the range of float32, which boxes of triangles have; use "
+                      "--objects node");
     }
 }
 
@@ -228,13 +259,14 @@ TEST(PlainMesh, StlIsTextOrBinary) {
     };
     EXPECT_EQ(refused(binary_stl("").substr(0, 100)),
               "m.stl: says that it has 1 triangles, but 16 bytes (50 each) follow its header; save it again");
-    EXPECT_EQ(refused("solid\nfacet normal 0 0 1\nvertex 1 2 3\n"), "m.stl: line 3: 'outer loop' is expected");
-    EXPECT_EQ(refused("solid\nfacette\n"), "m.stl: line 2: 'facet' or 'endsolid' is expected");
-    EXPECT_EQ(refused("solid\nendsolid\nsolyd\n"), "m.stl: line 3: 'solid' is expected");
+    EXPECT_EQ(refused("solid\nfacet normal 0 0 1\nvertex 1 2 3\n"),
+              "m.stl: line 3: 'outer loop' is expected, not 'vertex'");
+    EXPECT_EQ(refused("solid\nfacette\n"), "m.stl: line 2: 'facet' or 'endsolid' is expected, not 'facette'");
+    EXPECT_EQ(refused("solid\nendsolid\nsolyd\n"), "m.stl: line 3: 'solid' is expected, not 'solyd'");
     std::string infinite = binary_stl("");
     infinite.replace(84 + 12, 4, "\x00\x00\x80\x7F", 4);
-    EXPECT_EQ(refused(infinite), "m.stl: triangle 0 has a coordinate that is not finite");
-    EXPECT_EQ(refused(""), "m.stl: has no solid");
+    EXPECT_EQ(refused(infinite), "m.stl: triangle 0 (at byte 84) has a coordinate that is not finite; repair the mesh");
+    EXPECT_EQ(refused(""), "m.stl: has no solid: it is neither a text that begins with 'solid' nor a binary STL file");
 }
 
 TEST(PlainMesh, ObjHasObjectsAndGroups) {
@@ -256,7 +288,7 @@ TEST(PlainMesh, ObjHasObjectsAndGroups) {
     const auto refused = [](const std::string& lines) {
         return error_of(ErrorCode::bad_input, [&] { (void)io::parse_obj({lines, "m.obj", never}); });
     };
-    EXPECT_EQ(refused("v 0 0 0\nf 1 2 3\n"), "m.obj: a face has vertex 2, but there are 1");
+    EXPECT_EQ(refused("v 0 0 0\nf 1 2 3\n"), "m.obj: line 2: a corner of a face is vertex 3, but the file has 1");
     EXPECT_EQ(refused("v 0 0 0\nf -2\n"), "m.obj: line 2: a corner of a face is vertex -2, but there are 1 before it");
     EXPECT_EQ(refused("v 0 0 0\nf 1 0\n"),
               "m.obj: line 2: a corner of a face is '0', not the number of a vertex; the first vertex is 1");

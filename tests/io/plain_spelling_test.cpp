@@ -213,12 +213,15 @@ TEST(PlainSpelling, StlTextsAreReadInAllSpellings) {
         EXPECT_EQ(read.warnings, Texts());
     }
     const std::string long_line(90, '-');
-    EXPECT_EQ(refusal_of(read_stl, facet + facet), "m.stl: line 1: 'solid' is expected");
-    EXPECT_EQ(refusal_of(read_stl, long_line), "m.stl: line 1: 'solid' is expected");
+    EXPECT_EQ(refusal_of(read_stl, facet + facet), "m.stl: line 1: 'solid' is expected, not 'facet'");
+    EXPECT_EQ(refusal_of(read_stl, long_line),
+              "m.stl: line 1: 'solid' is expected, not '" + long_line.substr(0, 40) + "'");
     EXPECT_EQ(refusal_of(read_stl, "solid\nfacet normal 0 0 1\nouter lap\n"),
-              "m.stl: line 3: 'outer loop' is expected");
-    EXPECT_EQ(refusal_of(read_stl, "solid\n" + facet), "m.stl: ends where 'facet' or 'endsolid' should follow");
-    EXPECT_EQ(refusal_of(read_stl, "solid\nend facet\n"), "m.stl: line 2: 'facet' or 'endsolid' is expected");
+              "m.stl: line 3: 'outer loop' is expected, not 'lap'");
+    EXPECT_EQ(refusal_of(read_stl, "solid\n" + facet),
+              "m.stl: the file ends after line 8, where 'facet' or 'endsolid' should follow; copy or save it again");
+    EXPECT_EQ(refusal_of(read_stl, "solid\nend facet\n"),
+              "m.stl: line 2: 'facet' or 'endsolid' is expected, not 'facet'");
 }
 
 /// A binary STL file of two triangles that states another number of them.
@@ -274,6 +277,100 @@ TEST(PlainSpelling, OffHeadersAreReadInAllSpellings) {
         Texts{"m.off: from line 8 on it is not read, because the header says that it has 3 vertices and 1 faces"});
 }
 
+TEST(PlainSpelling, OffIsAStreamOfNumbers) {
+    const std::vector<Point3d> places = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    for (const std::string text :
+         {"OFF 3 2 0 0 0 0 1 0 0 0 1 0 3 0 1 2 3 2 1 0",
+          "OFF\n3\n2\n0\n0\n0 0 1\n0 # c\n0 0\n1 0\n3\n0\n1 2\n3 2\n1 0\n",
+          "OFF\n3 2\n0. 0 0 1 0 0\n0 1 0\n3 0 1 2 255 0 0\n3 2 1 0", "3 2 0\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n3 2 1 0\n",
+          "NOFF 3 2 0\n0 0 0\n0 0 1\n1 0 0\n0 0 1\n0 1 0\n0 0 1\n3 0 1 2\n3 2 1 0\n",
+          "COFF 3 2 0\n0 0 0 255 255\n255 1 0 0 1 2 3\n0 1 0 7 8 9\n3 0 1 2\n3 2 1 0\n",
+          "OFF 3 2 0 0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n",
+          "STCNOFF 3 2 0 0 0 0 0 0 1 .5 .5 .5 1 0 0\n1 0 0 0 0 1 .5 .5 .5 1 0 0 0 1 0 0 0 1 .5 .5 .5 1 0 0\n"
+          "3 0 1\n2\n3 2 1 0\n"}) {
+        const ReadMeshes read = read_off(text);
+        EXPECT_EQ(read.meshes[0].vertices, places) << text;
+        EXPECT_EQ(read.meshes[0].corners, (std::vector<std::uint32_t>{0, 1, 2, 2, 1, 0})) << text;
+        EXPECT_EQ(read.warnings, Texts()) << text;
+    }
+    // Words that the keyword does not announce are skipped in a file that has a line for each vertex.
+    EXPECT_EQ(read_off("OFF\n3 1 0\n0 0 0 9 9\n1 0 0 9 9\n0 1 0 9 9\n3 0 1 2\n").meshes[0].vertices, places);
+    EXPECT_EQ(refusal_of(read_off, "OFF 3 1 0\n0 0 0 1\n0 0 0 x 0\n3 0 1 2\n"),
+              "m.off: line 3: a coordinate is 'x', not a number");
+    EXPECT_EQ(refusal_of(read_off, "OFF 3 1 0 0 0 0 1 0 0 0 1 0\n3 0\n1 3\n"),
+              "m.off: line 3: a corner is 3, but at most 2 is possible; save the file again");
+}
+
+TEST(PlainSpelling, PlyTextIsAStreamOfNumbers) {
+    const std::string head = face_ply.substr(0, face_ply.find("0 0 0"));
+    for (const std::string rest :
+         {"0 0 0 1 0 0 0 1 0 3 0 1 2", "0\n0\n0 1\n\n0 0\n0 1\n0\n3\n0 1\n2\n", "0 0 0 1 0 0\n0 1 0\n3 0\n1 2\n"}) {
+        const ReadMeshes read = read_ply(head + rest);
+        EXPECT_EQ(read.meshes[0].vertices, (std::vector<Point3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << rest;
+        EXPECT_EQ(read.meshes[0].corners, (std::vector<std::uint32_t>{0, 1, 2})) << rest;
+        EXPECT_EQ(read.warnings, Texts()) << rest;
+    }
+    EXPECT_EQ(refusal_of(read_ply, head + "0 0 0 1 0 0\n0 1 0\n3 0\n1 9\n"),
+              "m.ply: line 13: face 0 has the corner 9, but there are 3 vertices");
+    EXPECT_EQ(refusal_of(read_ply, head + "0\n0\n0\n1\n0\n0\n0\n1\nnone\n"),
+              "m.ply: line 18: a number is 'none', not a number");
+    EXPECT_EQ(
+        read_ply("ply\nformat ascii 1.0\nelement vertex 1\nproperty int64 x\nproperty uint64 y\nproperty int64 z\n"
+                 "end_header\n-7 8 9\n")
+            .meshes[0]
+            .vertices,
+        (std::vector<Point3d>{{-7, 8, 9}}));
+}
+
+TEST(PlainSpelling, StlTextIsAStreamOfWords) {
+    const std::string facet_in_line =
+        " facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet";
+    const std::string broken =
+        "facet\nnormal\n0 0\n-nan(ind)\nouter\nloop\nvertex\n0 0\n0\nvertex 1\n0 0 vertex 0 1 0\nendloop\nendfacet\n";
+    for (const auto& [text, names] : std::vector<std::pair<std::string, Texts>>{
+             {"solid" + facet_in_line + " endsolid", {""}},
+             {"solid a part" + facet_in_line + " endsolid a part solid b" + facet_in_line + " endsolid b\n",
+              {"a part", "b"}},
+             {"solid a" + facet_in_line + " endsolid solid b" + facet_in_line + " endsolid", {"a", "b"}},
+             {"solid a" + facet_in_line + " endsolid other solid b" + facet_in_line + " endsolid", {"a", "b"}},
+             {"solid a" + facet_in_line + " endsolid a  solid b end solid \t b\tsolid c endsolid c", {"a", "b", "c"}},
+             {"solid solid a\n" + broken + "endsolid solid a\n", {"solid a"}},
+             {"solid a facet\n" + broken + "end\nsolid a facet\n", {"a facet"}}}) {
+        const ReadMeshes read = read_stl(text);
+        EXPECT_EQ(read.names(), names) << text;
+        EXPECT_GE(read.triangles(), 1u) << text;
+        EXPECT_EQ(read.meshes[0].vertices, (std::vector<Point3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
+    }
+    EXPECT_EQ(read_stl("solid a endsolid a solid b endsolid\n").names(), (Texts{"a", "b"}));
+    EXPECT_EQ(refusal_of(read_stl, "solid\nfacet\nnormal 0\n0 1\nouter lap\n"),
+              "m.stl: line 5: 'outer loop' is expected, not 'lap'");
+    EXPECT_EQ(refusal_of(read_stl, "solid\nfacet normal 0 0 1\nred\nouter loop\n"),
+              "m.stl: line 3: 'outer loop' is expected, not 'red'");
+    EXPECT_EQ(refusal_of(read_stl, "solid\nfacet normal 0 0 1 outer loop vertex 0 0\nvertex\n"),
+              "m.stl: line 3: a coordinate is 'vertex', not a number");
+}
+
+TEST(PlainSpelling, NumbersOfFortranAreRead) {
+    const std::string text = "OFF\n1 0 0\n1.D+02 -.5d-1 +1d0\n";
+    EXPECT_EQ(read_off(text).meshes[0].vertices, (std::vector<Point3d>{{100, -0.05, 1}}));
+    for (const std::string word : {"d", "d1", "1d", "1dd", "1.5d+", "x1d0", "1e5d3"}) {
+        EXPECT_EQ(refusal_of(read_obj, "v 0 0 " + word + "\n"),
+                  "m.obj: line 1: a coordinate is '" + word + "', not a number");
+    }
+}
+
+TEST(PlainSpelling, NoTwoMeshesHaveTheSameName) {
+    const TemporaryDirectory directory;
+    const std::string obj = directory.file("m.obj"), stl = directory.file("m.stl"), face = "f 1 2 3\n";
+    write_file(obj, triangle_vertices + "o A\ng x\n" + face + "o B\ng x\n" + face + "o A/x\n" + face);
+    EXPECT_EQ(io::read_scene(obj, {}).names, (Texts{"m.obj/A/x", "m.obj/B/x", "m.obj/A/x#2"}));
+    std::string solids;
+    for (const std::string name : {"a", "", "a", "#1", "a#2"}) solids += "solid " + name + "\n" + facet + "endsolid\n";
+    write_file(stl, solids);
+    EXPECT_EQ(io::read_scene(stl, {}).names, (Texts{"m.stl/a", "m.stl/#1", "m.stl/a#2", "m.stl/#1#3", "m.stl/a#2#4"}));
+    EXPECT_EQ(io::read_scene(stl, {io::MeshObjects::triangle, true}).triangles->owner_names[2], "m.stl/a#2");
+}
+
 TEST(PlainSpelling, PlyElementsComeInAnyOrder) {
     const ReadMeshes read = read_ply(
         "ply\nformat ascii 1.0\nobj_info a\nelement face 2\nproperty list uint8 double vertex_index\nproperty float x\n"
@@ -287,7 +384,7 @@ TEST(PlainSpelling, PlyElementsComeInAnyOrder) {
         "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 3\n"
         "property float x\nproperty float y\nproperty float z\nend_header\n";
     EXPECT_EQ(refusal_of(read_ply, faces_first + "3 0 1 3\n0 0 0\n1 0 0\n0 1 0\n"),
-              "m.ply: face 0 has the corner 3, but there are 3 vertices");
+              "m.ply: line 10: face 0 has the corner 3, but there are 3 vertices");
 }
 
 TEST(PlainSpelling, PlyTellsWhatIsLostOrMissing) {
@@ -303,7 +400,7 @@ TEST(PlainSpelling, PlyTellsWhatIsLostOrMissing) {
     const std::string colours_first =
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\nelement face 1\n"
         "property uchar red\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n";
-    EXPECT_EQ(refusal_of(read_ply, colours_first + "255\n"), "m.ply: face 0 ends before its corners");
+    EXPECT_EQ(refusal_of(read_ply, colours_first + "255\n"), "m.ply: line 12: face 0 ends before its corners");
     EXPECT_EQ(refusal_of(read_ply, colours_first.substr(0, colours_first.find("element face")) +
                                        "property list char char a\nend_header\n0 0 0 2 7\n"),
               "m.ply: line 9: the line ends where a number should follow");

@@ -34,6 +34,17 @@ inline std::string repetition(std::uint64_t seed, const std::string& file) {
     return fmt::format("OCTOPAIR_TEST_SEED={}\n{}", seed, file);
 }
 
+/// Returns what a reader returns for a valid file. If it refuses the file, the test fails and shows it.
+template <typename Read>
+auto read_of_valid(std::uint64_t seed, const std::string& file, const Read& read) {
+    try {
+        return read();
+    } catch (const Error& error) {
+        ADD_FAILURE() << error.what() << '\n' << repetition(seed, file);
+        return decltype(read())();
+    }
+}
+
 /// A number of a text, and the value that the C library gives it.
 struct SpelledNumber {
     std::string text;

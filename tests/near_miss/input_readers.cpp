@@ -109,7 +109,8 @@ void read_npy(const NearMissFile& file, Values& values) {
     const auto bytes = std::as_bytes(std::span(file.content));
     const io::NpyHeader header = io::parse_npy_header(bytes, bytes.size(), "f");
     const io::SceneShape shape = io::scene_shape(header, "f");
-    values.word(io::type_text(header.type));
+    values.word((header.big_endian ? ">" : "<") + std::string(io::type_text(header.type).substr(1)));
+    values.word(header.fortran_order ? "F" : "C");
     values.word(shape.spheres ? "spheres" : shape.moving ? "moving" : "boxes");
     values.whole(shape.frames);
     values.whole(shape.objects);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -15,7 +17,7 @@
 
 namespace octopair::io {
 
-static_assert(std::endian::native == std::endian::little, "arrays are read without conversion of their byte order");
+static_assert(std::endian::native == std::endian::little, "little endian arrays are read without conversion");
 
 namespace {
 
@@ -30,7 +32,41 @@ NpyHeader read_header(const InputFile& file) {
 
 void refuse_integers(const NpyHeader& header, std::string_view file) {
     if (header.type == NpyType::float32 || header.type == NpyType::float64) return;
-    refuse(file, fmt::format("its array is of type '{}'; '<f4' or '<f8' is needed", type_text(header.type)));
+    refuse(file, fmt::format("its array is of type '{}'; '<f4' or '<f8' is needed: save array.astype('<f8')",
+                             type_text(header.type)));
+}
+
+/// Turns the bytes of each number round.
+template <typename Real>
+void turn_bytes(std::span<Real> values) {
+    for (Real& value : values) {
+        if constexpr (sizeof(Real) == 4) {
+            value = std::bit_cast<Real>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+        } else {
+            value = std::bit_cast<Real>(__builtin_bswap64(std::bit_cast<std::uint64_t>(value)));
+        }
+    }
+}
+
+/// Reads numbers that follow each other in a file, from number `first` of the array on.
+template <typename Real>
+void read_numbers(const InputFile& file, const NpyHeader& header, std::uint64_t first, std::span<Real> values,
+                  const std::stop_token& stop) {
+    const std::uint64_t begin = header.data_offset + first * sizeof(Real);
+    if (!header.big_endian) return file.read(begin, std::as_writable_bytes(values), stop);
+    constexpr std::size_t piece = std::size_t(1) << 20;  // a stop request is seen before each
+    for (std::size_t at = 0; at < values.size(); at += piece) {
+        const auto some = values.subspan(at, std::min(piece, values.size() - at));
+        file.read(begin + at * sizeof(Real), std::as_writable_bytes(some), stop);
+        turn_bytes(some);
+    }
+}
+
+/// Returns the numbers of boxes or spheres.
+template <typename Real, typename Object>
+std::span<Real> numbers_of(std::span<Object> objects) {
+    static_assert(sizeof(Object) % sizeof(Real) == 0);
+    return {reinterpret_cast<Real*>(objects.data()), objects.size() * (sizeof(Object) / sizeof(Real))};
 }
 
 }  // namespace
@@ -71,8 +107,16 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
     Buffer<Box<Real>> boxes{std::size_t(shape_.frames) * objects};
     if (shape_.spheres) {
         Buffer<Sphere<Real>> spheres{objects};
-        read_rows(rows.begin, spheres.span(), stop);
+        if (header_.fortran_order) {
+            read_columns(rows, numbers_of<Real>(spheres.span()), stop);
+        } else {
+            read_rows(rows.begin, spheres.span(), stop);
+        }
         boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin});
+        return boxes;
+    }
+    if (header_.fortran_order) {
+        read_columns(rows, numbers_of<Real>(boxes.span()), stop);
         return boxes;
     }
     // If all objects are read, the layout in memory is that of the file, so one read is enough.
@@ -88,7 +132,8 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
 template <typename Real>
 std::optional<Buffer<Box<Real>>> NpyScene::map_boxes(const ObjectRows& rows, std::uint64_t min_mapped) const {
     const std::uint64_t objects = rows.end - rows.begin;
-    const bool adjacent = !shape_.spheres && (shape_.frames == 1 || objects == shape_.objects);
+    const bool as_in_memory = !header_.fortran_order && !header_.big_endian;
+    const bool adjacent = as_in_memory && !shape_.spheres && (shape_.frames == 1 || objects == shape_.objects);
     const std::uint64_t bytes = shape_.frames * objects * sizeof(Box<Real>);
     const std::uint64_t begin = header_.data_offset + rows.begin * sizeof(Box<Real>);
     if (!adjacent || bytes < min_mapped || begin % alignof(Box<Real>) != 0) return std::nullopt;
@@ -97,9 +142,32 @@ std::optional<Buffer<Box<Real>>> NpyScene::map_boxes(const ObjectRows& rows, std
     return Buffer<Box<Real>>::adopt(boxes, std::size_t(shape_.frames * objects), mapped_pages());
 }
 
+/// Reads the objects `rows` in all frames from an array in Fortran order: for each column, the frames of the first object, then those of
+/// the next. `values` has the columns of the first object in the first frame, then those of the next object.
+template <typename Real>
+void NpyScene::read_columns(const ObjectRows& rows, std::span<Real> values, const std::stop_token& stop) const {
+    constexpr std::size_t piece = std::size_t(1) << 18;
+    const std::uint64_t objects = rows.end - rows.begin, frames = shape_.frames, columns = header_.shape.back();
+    const std::uint64_t numbers = objects * frames;
+    Buffer<Real> some{std::size_t(std::min<std::uint64_t>(piece, numbers))};
+    for (std::uint64_t column = 0; column < columns; ++column) {
+        const std::uint64_t first = (column * shape_.objects + rows.begin) * frames;
+        for (std::uint64_t begin = 0; begin < numbers; begin += piece) {
+            const auto part = some.span().first(std::size_t(std::min<std::uint64_t>(piece, numbers - begin)));
+            read_numbers(file_, header_, first + begin, part, stop);
+            for (std::size_t i = 0; i < part.size(); ++i) {
+                const std::uint64_t object = (begin + i) / frames, frame = (begin + i) % frames;
+                values[(frame * objects + object) * columns + column] = part[i];
+            }
+        }
+    }
+}
+
+/// Reads boxes or spheres that follow each other in the file.
 template <typename T>
 void NpyScene::read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
-    file_.read(header_.data_offset + first * sizeof(T), std::as_writable_bytes(rows), stop);
+    using Real = std::conditional_t<std::is_same_v<T, Box3d> || std::is_same_v<T, Sphere<double>>, double, float>;
+    read_numbers(file_, header_, first * (sizeof(T) / sizeof(Real)), numbers_of<Real>(rows), stop);
 }
 
 LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop) {
@@ -112,7 +180,17 @@ std::optional<NpyFrames> NpyFrames::open(const std::string& path) {
     NpyHeader header = read_header(file);
     const SceneShape shape = scene_shape(header, path);
     if (!shape.moving) return std::nullopt;
-    return NpyFrames(std::move(file), std::move(header), shape);
+    NpyFrames frames(std::move(file), std::move(header), shape);
+    if (frames.header_.fortran_order) frames.whole_ = read_npy_scene(path);
+    return frames;
+}
+
+template <typename Real>
+void NpyFrames::read_rows(std::uint64_t first, std::span<Box<Real>> rows, const std::stop_token& stop) const {
+    if (!header_.fortran_order) return read_numbers(file_, header_, first * 6, numbers_of<Real>(rows), stop);
+    file_.check_unchanged();
+    const auto all = std::get<Buffer<Box<Real>>>(whole_.boxes).span();
+    std::copy_n(all.begin() + std::ptrdiff_t(first), rows.size(), rows.begin());
 }
 
 void NpyFrames::read(std::uint64_t frame, std::span<Box3f> boxes, const std::stop_token& stop) const {
@@ -140,10 +218,10 @@ Buffer<double> read_padding(const std::string& path, const std::stop_token& stop
     if (shape.size() != 1) refuse(path, fmt::format("its shape is {}; paddings are (n,)", shape_text(shape)));
     Buffer<double> padding{std::size_t(shape[0])};
     if (header.type == NpyType::float64) {
-        file.read(header.data_offset, std::as_writable_bytes(padding.span()), stop);
+        read_numbers(file, header, 0, padding.span(), stop);
     } else {
         Buffer<float> narrow{padding.size()};
-        file.read(header.data_offset, std::as_writable_bytes(narrow.span()), stop);
+        read_numbers(file, header, 0, narrow.span(), stop);
         std::copy_n(narrow.data(), narrow.size(), padding.data());
     }
     for (std::size_t i = 0; i < padding.size(); ++i) {

@@ -54,6 +54,8 @@ private:
     Buffer<Box<Real>> read_boxes(const ObjectRows& rows, const std::stop_token& stop, std::uint64_t min_mapped) const;
     template <typename Real>
     std::optional<Buffer<Box<Real>>> map_boxes(const ObjectRows& rows, std::uint64_t min_mapped) const;
+    template <typename Real>
+    void read_columns(const ObjectRows& rows, std::span<Real> values, const std::stop_token& stop) const;
     template <typename T>
     void read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const;
 
@@ -65,7 +67,8 @@ private:
 /// Reads all objects of a file. Throws: Error{bad_input, io_failed, cancelled}.
 LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop = {});
 
-/// A moving scene that is read one frame at a time.
+/// A moving scene that is read one frame at a time. In Fortran order, the numbers of a frame are all over the file, so the whole scene is
+/// in memory.
 class NpyFrames {
 public:
     /// Opens a file. Returns nothing if its array has no frame axis. Throws: what read_npy_scene() throws.
@@ -84,14 +87,13 @@ private:
     NpyFrames(InputFile file, NpyHeader header, const SceneShape& shape)
         : file_(std::move(file)), header_(std::move(header)), shape_(shape) {}
 
-    template <typename T>
-    void read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
-        file_.read(header_.data_offset + first * sizeof(T), std::as_writable_bytes(rows), stop);
-    }
+    template <typename Real>
+    void read_rows(std::uint64_t first, std::span<Box<Real>> rows, const std::stop_token& stop) const;
 
     InputFile file_;
     NpyHeader header_;
     SceneShape shape_;
+    LoadedScene whole_;  // in Fortran order: all frames
 };
 
 /// Reads paddings: an array of floats of shape (n,), finite and >= 0. Throws: what read_npy_scene() throws.

@@ -75,7 +75,9 @@ private:
         expect(':');
         if (key == "descr" && !fields.descr) {
             skip_spaces();
-            if (peek() == '[') refuse(file_, "its array has a structured type; '<f4' or '<f8' is needed");
+            if (peek() == '[')
+                refuse(file_,
+                       "its array has a structured type; '<f4' or '<f8' is needed: save one array of plain numbers");
             fields.descr = std::string(parse_string());
         } else if (key == "fortran_order" && !fields.fortran_order) {
             fields.fortran_order = parse_bool();
@@ -131,6 +133,7 @@ private:
         if (error == std::errc::result_out_of_range) refuse(file_, "its npy header has a length beyond 64 bits");
         if (error != std::errc() || (*begin == '0' && stop != begin + 1)) malformed();
         at_ += std::size_t(stop - begin);
+        if (peek() == 'L') ++at_;
         return value;
     }
 
@@ -148,7 +151,9 @@ private:
         if (!take(c)) malformed();
     }
     [[noreturn]] void malformed() const {
-        refuse(file_, fmt::format("its npy header is malformed at character {}: {}", at_, quoted(text_.substr(at_))));
+        refuse(file_,
+               fmt::format("its npy header is malformed at character {}: {}; save the array again with numpy.save", at_,
+                           quoted(text_.substr(at_))));
     }
 
     std::string_view text_;
@@ -161,9 +166,9 @@ std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std
     if (bytes.empty()) refuse(file, "not an npy file: it is empty");
     const std::string_view start = bytes.substr(0, magic.size());
     if (start != magic.substr(0, start.size())) {
-        refuse(file, fmt::format("not an npy file: it begins with {}", quoted(start)));
+        refuse(file, fmt::format("not an npy file: it begins with {}; save the array with numpy.save", quoted(start)));
     }
-    if (bytes.size() < 12) refuse(file, "truncated npy file: it ends within the header");
+    if (bytes.size() < 12) refuse(file, "truncated npy file: it ends within the header; copy or save it again");
     const unsigned major = std::uint8_t(bytes[6]), minor = std::uint8_t(bytes[7]);
     if (major < 1 || major > 3 || minor != 0) {
         refuse(file, fmt::format("npy format version {}.{}; versions 1.0, 2.0 and 3.0 are supported", major, minor));
@@ -172,18 +177,29 @@ std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std
     std::uint64_t length = 0;
     for (std::size_t i = begin; i-- > 8;) length = length << 8 | std::uint8_t(bytes[i]);
     if (begin + length > npy_header_max_bytes)
-        refuse(file, fmt::format("its npy header has {} bytes, which is too long", length));
-    if (begin + length > bytes.size()) refuse(file, "truncated npy file: it ends within the header");
+        refuse(file, fmt::format("its npy header has {} bytes, which is too long: at most 65536 are read", length));
+    if (begin + length > bytes.size())
+        refuse(file, "truncated npy file: it ends within the header; copy or save it again");
     return {bytes.substr(begin, std::size_t(length)), begin + length};
 }
 
-NpyType find_type(std::string_view descr, std::string_view file) {
+/// Sets the type and the order of bytes.
+void set_type(NpyHeader& header, std::string_view descr, std::string_view file) {
+    header.big_endian = descr.starts_with('>');
     for (const TypeRow& row : types) {
-        if (row.text == descr) return row.type;
+        if (descr.empty() || descr.substr(1) != row.text.substr(1) || !(descr[0] == '<' || header.big_endian)) continue;
+        header.type = row.type;
+        return;
     }
-    const bool big_endian = descr.starts_with('>');
-    refuse(file, fmt::format("its array is of type {}{}; '<f4' or '<f8' is needed", quoted(descr),
-                             big_endian ? " (big endian)" : ""));
+    refuse(file,
+           fmt::format("its array is of type {}; '<f4' or '<f8' is needed: save array.astype('<f8')", quoted(descr)));
+}
+
+/// Throws: Error{bad_input} if integers are not as octopair writes them.
+void check_layout(const NpyHeader& header, std::string_view file) {
+    if (header.type == NpyType::float32 || header.type == NpyType::float64) return;
+    if (header.big_endian) refuse(file, "its integers are big endian; save array.astype('<u4')");
+    if (header.fortran_order) refuse(file, "its integers are in Fortran order; save numpy.ascontiguousarray(array)");
 }
 
 /// Returns the size of the array in bytes, or nothing if it exceeds 64 bits.
@@ -199,6 +215,11 @@ std::optional<std::uint64_t> data_bytes(const NpyHeader& header) {
     return overflow ? std::nullopt : std::optional(bytes);
 }
 
+/// Returns the type of an array, with its order of bytes.
+std::string type_text(const NpyHeader& header) {
+    return (header.big_endian ? ">" : "<") + std::string(io::type_text(header.type).substr(1));
+}
+
 void check_size(const NpyHeader& header, std::uint64_t file_size, std::string_view file) {
     const std::optional<std::uint64_t> needed = data_bytes(header);
     const std::uint64_t present = file_size - header.data_offset;
@@ -206,7 +227,7 @@ void check_size(const NpyHeader& header, std::uint64_t file_size, std::string_vi
     const std::string_view verdict =
         !needed || present < *needed ? "the file is truncated" : "the file has trailing bytes";
     refuse(file, fmt::format("{}: shape {} of '{}' needs {} bytes of data, found {}", verdict, shape_text(header.shape),
-                             type_text(header.type), needed ? std::to_string(*needed) : "more than 2^64", present));
+                             type_text(header), needed ? std::to_string(*needed) : "more than 2^64", present));
 }
 
 }  // namespace
@@ -223,10 +244,11 @@ NpyHeader parse_npy_header(std::span<const std::byte> bytes, std::uint64_t file_
     const auto [text, data_offset] = find_text(characters, file);
     const Fields fields = DictParser(text, file).parse();
     NpyHeader header;
-    header.type = find_type(*fields.descr, file);
-    if (*fields.fortran_order) refuse(file, "its array is in Fortran order; C order is needed");
+    set_type(header, *fields.descr, file);
+    header.fortran_order = *fields.fortran_order;
     header.shape = *fields.shape;
     header.data_offset = data_offset;
+    check_layout(header, file);
     check_size(header, file_size, file);
     return header;
 }

@@ -5,7 +5,8 @@
 //   text         a Python dict literal of exactly the keys 'descr', 'fortran_order', 'shape', then spaces, then '\n'
 //   data         right after the text, to the end of the file
 //
-// Accepted: C order; little endian float32, float64, uint32 and uint64; a file of exactly the length that the shape needs.
+// Accepted: float32 and float64 in either byte order, in C or Fortran order; little endian uint32 and uint64 in C order; a file of
+// exactly the length that the shape needs. Lengths of the shape may end with L, as Python 2 writes them.
 // For everything else, the error says what was found.
 //
 // Source: NumPy enhancement proposal 1 and numpy.lib.format.
@@ -30,6 +31,8 @@ struct NpyHeader {
     NpyType type = NpyType::float32;
     std::vector<std::uint64_t> shape;
     std::uint64_t data_offset = 0;
+    bool fortran_order = false;  ///< the first index of an element changes fastest, not the last
+    bool big_endian = false;
 };
 
 /// Returns the shape as Python writes it: "(3, 6)", "(3,)", "()".

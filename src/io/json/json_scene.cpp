@@ -80,7 +80,7 @@ private:
             if (stop_.stop_requested()) cancel();
             shape_numbers_.emplace(name, loaded_.shapes.size());
             const std::string place = fmt::format("{}: shape '{}'", file_, shown_text(name));
-            loaded_.shapes.push_back(json_shape(value, place, load_mesh_));
+            loaded_.shapes.push_back(json_shape(value, place, load_mesh_, stop_));
         }
     }
 
@@ -109,13 +109,14 @@ private:
     std::uint32_t shape_number(const JsonFields& fields) {
         const json& shape = fields.need("shape");
         if (!shape.is_string()) {
-            loaded_.shapes.push_back(json_shape(shape, fields.place_of("shape"), load_mesh_));
+            loaded_.shapes.push_back(json_shape(shape, fields.place_of("shape"), load_mesh_, stop_));
             return std::uint32_t(loaded_.shapes.size() - 1);
         }
         const std::string& name = fields.text("shape");
         const auto found = shape_numbers_.find(name);
         if (found == shape_numbers_.end()) {
-            fields.refuse_key("shape", fmt::format("no shape has the name '{}'", shown_text(name)));
+            fields.refuse_key(
+                "shape", fmt::format("no shape has the name '{}'; add it to 'shapes' at the root", shown_text(name)));
         }
         return found->second;
     }

@@ -48,18 +48,33 @@ shape::Plane plane(const JsonFields& fields) {
     return plane;
 }
 
-std::vector<Point3d> points(const JsonFields& fields, std::string_view key) {
-    const std::string place = fields.place_of(key);
-    const json::array_t& array = json_array(fields.need(key), place);
+/// Throws: Error{cancelled} now and then after a stop request.
+void check_stop(const std::stop_token& stop, std::size_t element) {
+    constexpr std::size_t elements_between_checks = 4096;
+    if (element % elements_between_checks == 0 && stop.stop_requested()) cancel();
+}
+
+bool is_point(const json& value) {
+    return value.is_array() && value.size() == 3 && value[0].is_number() && value[1].is_number() &&
+           value[2].is_number();
+}
+
+std::vector<Point3d> points(const JsonFields& fields, std::string_view key, const std::stop_token& stop) {
+    const json::array_t& array = json_array(fields.need(key), fields.place_of(key));
     std::vector<Point3d> points;
     points.reserve(array.size());
-    for (std::size_t i = 0; i < array.size(); ++i) points.push_back(json_point(array[i], place));
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        check_stop(stop, i);
+        // Only errors need the place, and a text costs more than a point.
+        points.push_back(
+            json_point(array[i], is_point(array[i]) ? std::string() : fmt::format("{}[{}]", fields.place_of(key), i)));
+    }
     return points;
 }
 
-shape::ConvexHull convex_hull(const JsonFields& fields) {
+shape::ConvexHull convex_hull(const JsonFields& fields, const std::stop_token& stop) {
     fields.allow({"type", "points"});
-    shape::ConvexHull hull{points(fields, "points")};
+    shape::ConvexHull hull{points(fields, "points", stop)};
     if (hull.points.empty()) fields.refuse_key("points", "the list is empty; a hull needs at least one point");
     return hull;
 }
@@ -76,22 +91,31 @@ std::array<std::uint32_t, 3> triangle(const json& value, const std::string& plac
     return triangle;
 }
 
-shape::Mesh inline_mesh(const JsonFields& fields) {
+bool is_triangle(const json& value, std::size_t vertices) {
+    const auto is_vertex = [&](const json& corner) {
+        return corner.is_number_unsigned() && corner.get<std::uint64_t>() < vertices;
+    };
+    return value.is_array() && value.size() == 3 && is_vertex(value[0]) && is_vertex(value[1]) && is_vertex(value[2]);
+}
+
+shape::Mesh inline_mesh(const JsonFields& fields, const std::stop_token& stop) {
     shape::Mesh mesh;
-    mesh.vertices = points(fields, "vertices");
+    mesh.vertices = points(fields, "vertices", stop);
     const json::array_t& triangles = json_array(fields.need("triangles"), fields.place_of("triangles"));
     mesh.triangles.reserve(triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-        mesh.triangles.push_back(
-            triangle(triangles[i], fmt::format("{}: triangle {}", fields.place(), i), mesh.vertices.size()));
+        check_stop(stop, i);
+        const bool is_valid = is_triangle(triangles[i], mesh.vertices.size());
+        const std::string place = is_valid ? std::string() : fmt::format("{}: triangle {}", fields.place(), i);
+        mesh.triangles.push_back(triangle(triangles[i], place, mesh.vertices.size()));
     }
     return mesh;
 }
 
-shape::Mesh mesh(const JsonFields& fields, const MeshLoader& load_mesh) {
+shape::Mesh mesh(const JsonFields& fields, const MeshLoader& load_mesh, const std::stop_token& stop) {
     if (fields.find("file") == nullptr) {
         fields.allow({"type", "vertices", "triangles", "file"});
-        return inline_mesh(fields);
+        return inline_mesh(fields, stop);
     }
     for (const std::string_view key : {"vertices", "triangles"}) {
         if (fields.find(key) != nullptr) fields.refuse_key(key, "not allowed together with 'file'");
@@ -106,7 +130,8 @@ shape::Mesh mesh(const JsonFields& fields, const MeshLoader& load_mesh) {
 
 }  // namespace
 
-shape::Any json_shape(const json& value, const std::string& place, const MeshLoader& load_mesh) {
+shape::Any json_shape(const json& value, const std::string& place, const MeshLoader& load_mesh,
+                      const std::stop_token& stop) {
     const JsonFields fields(value, place);
     const std::string& type = fields.text("type");
     if (type == "sphere") return sphere(fields);
@@ -116,8 +141,8 @@ shape::Any json_shape(const json& value, const std::string& place, const MeshLoa
     if (type == "cone") return round_shape<shape::Cone>(fields);
     if (type == "ellipsoid") return ellipsoid(fields);
     if (type == "plane") return plane(fields);
-    if (type == "convex_hull") return convex_hull(fields);
-    if (type == "mesh") return mesh(fields, load_mesh);
+    if (type == "convex_hull") return convex_hull(fields, stop);
+    if (type == "mesh") return mesh(fields, load_mesh, stop);
     fields.refuse_key("type", fmt::format("'{}' is not a type of shape; types: sphere, box, capsule, cylinder, "
                                           "cone, ellipsoid, plane, convex_hull, mesh",
                                           shown_text(type)));

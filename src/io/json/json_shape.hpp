@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,7 +15,8 @@ namespace octopair::io {
 using MeshLoader = std::function<shape::Mesh(const std::string& name)>;
 
 /// Returns the shape that `value` describes. `place` is the beginning of messages.
-/// Throws: Error{bad_input}; what `load_mesh` throws, with `place` before its message.
-shape::Any json_shape(const nlohmann::json& value, const std::string& place, const MeshLoader& load_mesh);
+/// Throws: Error{bad_input}; what `load_mesh` throws, with `place` before its message; Error{cancelled}.
+shape::Any json_shape(const nlohmann::json& value, const std::string& place, const MeshLoader& load_mesh,
+                      const std::stop_token& stop);
 
 }  // namespace octopair::io

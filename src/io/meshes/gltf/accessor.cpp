@@ -51,7 +51,8 @@ Accessor::Accessor(GltfFile& file, std::uint64_t number, unsigned components) : 
 void Accessor::read_type(const JsonFields& fields) {
     const std::uint64_t type = whole_number(fields, "componentType");
     if (type < 5120 || type > 5126 || type == 5124)
-        fields.refuse_key("componentType", fmt::format("{} is not a type of glTF", type));
+        fields.refuse_key("componentType",
+                          fmt::format("{} is not a type of glTF, which are 5120 to 5123, 5125 and 5126", type));
     type_ = Type(type);
     normalized_ = fields.find("normalized") != nullptr && fields.boolean("normalized");
     if (normalized_ && type_ == Type::uint32)
@@ -102,7 +103,8 @@ void Accessor::read_sparse(GltfFile& file, const JsonFields& sparse) {
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t index = numbers.index_at(i);
         if (index >= count_) refuse(numbers.place_, fmt::format("replaces element {} of {}", index, count_));
-        if (i > 0 && index <= replaced_.back()) refuse(numbers.place_, "the indices do not ascend");
+        if (i > 0 && index <= replaced_.back())
+            refuse(numbers.place_, fmt::format("index {} is {}, which is not above the index before it", i, index));
         replaced_.push_back(index);
     }
 }

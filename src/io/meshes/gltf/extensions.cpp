@@ -16,12 +16,13 @@ using nlohmann::json;
 
 constexpr std::string_view draco = "KHR_draco_mesh_compression", quantization = "KHR_mesh_quantization";
 
-/// Extensions that change neither vertices nor the places of nodes. All KHR_materials_... and ADOBE_materials_... are such, too.
-constexpr std::array<std::string_view, 27> without_geometry = {"KHR_animation_pointer",
+/// Extensions that change neither vertices nor the places of nodes. Nodes that KHR_node_visibility hides are read like others. All KHR_materials_... and ADOBE_materials_... are such, too.
+constexpr std::array<std::string_view, 28> without_geometry = {"KHR_animation_pointer",
                                                                "KHR_audio_emitter",
                                                                "KHR_lights_punctual",
                                                                "KHR_node_hoverability",
                                                                "KHR_node_selectability",
+                                                               "KHR_node_visibility",
                                                                "KHR_technique_webgl",
                                                                "KHR_techniques_webgl",
                                                                "KHR_texture_basisu",

@@ -13,6 +13,9 @@ namespace octopair::io::gltf {
 /// Name of the extension that places many copies of a node.
 inline constexpr const char* instancing = "EXT_mesh_gpu_instancing";
 
+/// Name of the extension that says which nodes are shown.
+inline constexpr const char* visibility = "KHR_node_visibility";
+
 /// Throws: Error{bad_input} that names an extension that the file requires, and that octopair does not read.
 void check_required_extensions(const GltfFile& file);
 

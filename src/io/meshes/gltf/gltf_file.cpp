@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
+#include "io/files/letter_case.hpp"
 #include "io/json/json_text.hpp"
 #include "io/meshes/gltf/fields.hpp"
 #include "io/meshes/gltf/uri.hpp"
@@ -59,12 +60,25 @@ json parsed(std::string_view text, const std::string& path, const std::stop_toke
     }
 }
 
-std::string version_of(const JsonFields& root) {
+/// Returns a version of the object "asset"; empty if it is absent.
+std::string version_of(const JsonFields& root, std::string_view key) {
     const JsonFields asset(root.need("asset"), root.place_of("asset"));
-    const json& version = asset.need("version");
-    if (version.is_number())
-        return fmt::format("{:.1f}", version.get<double>());  // some exporters write 2.0 as a number
-    return json_text(version, asset.place_of("version"));
+    const json* const version = asset.find(key);
+    if (version == nullptr) return {};
+    // Some exporters write 2.0 as a number.
+    if (version->is_number()) return fmt::format("{:.1f}", version->get<double>());
+    return json_text(*version, asset.place_of(key));
+}
+
+/// Throws: Error{bad_input} if a file can be read only by programs that know a newer version than 2.0.
+void check_least_version(const JsonFields& root) {
+    const std::string least = version_of(root, "minVersion");
+    if (least.empty() || least.starts_with("2.0") || least.starts_with("1.")) return;
+    const JsonFields asset(root.need("asset"), root.place_of("asset"));
+    asset.refuse_key("minVersion",
+                     fmt::format("the file needs a reader of glTF {}; octopair reads glTF 2.0, so write the "
+                                 "file as glTF 2.0",
+                                 shown_text(least)));
 }
 
 /// Returns whether a text has the key "version" with a value that begins with 1.
@@ -100,7 +114,8 @@ GltfFile::GltfFile(std::string path, Buffer<std::byte> content, const std::stop_
 void GltfFile::split_glb() {
     const std::span<const std::byte> all = content_.span();
     const auto cut = [&](std::uint64_t bytes) {
-        refuse(path(), fmt::format("is cut: a GLB file of {} bytes, but it says that it has {}", all.size(), bytes));
+        refuse(path(), fmt::format("is cut: a GLB file of {} bytes, but it says that it has {}; copy it again",
+                                   all.size(), bytes));
     };
     if (all.size() < header_bytes) cut(header_bytes);
     if (const std::uint32_t version = number_at(all, 4); version != 2) {
@@ -129,7 +144,9 @@ void GltfFile::split_glb() {
 
 void GltfFile::parse(std::span<const std::byte> text) {
     root_ = parsed(text_of(text), path(), stop());
-    version_ = version_of(fields());
+    (void)JsonFields(fields().need("asset"), fields().place_of("asset")).need("version");
+    version_ = version_of(fields(), "version");
+    check_least_version(fields());
 }
 
 std::size_t GltfFile::count(std::string_view list) const { return array_or_empty(fields(), list).size(); }
@@ -160,7 +177,8 @@ std::span<const std::byte> GltfFile::buffer(std::uint64_t number) {
     const auto bytes = bytes_of(fields, number);
     const std::uint64_t size = whole_number(fields, "byteLength");
     if (size > bytes.size())
-        fields.refuse_key("byteLength", fmt::format("{}, but there are {} bytes", size, bytes.size()));
+        fields.refuse_key("byteLength", fmt::format("{}, but its data have {} bytes; copy or export the file again",
+                                                    size, bytes.size()));
     return bytes.first(size);
 }
 
@@ -173,20 +191,25 @@ std::span<const std::byte> GltfFile::bytes_of(const JsonFields& buffer, std::uin
         return binary_chunk_;
     }
     const std::string& uri = buffer.text("uri");
-    const auto scheme = scheme_of(uri);
-    Buffer<std::byte> bytes = scheme == "data" ? embedded(buffer, uri) : other_file(buffer, uri);
-    if (scheme != "data") budget_.add_file(bytes.size());
+    const bool is_data = equal_in_any_case(scheme_of(uri).value_or(""), "data");
+    Buffer<std::byte> bytes = is_data ? embedded(buffer, uri) : other_file(buffer, uri);
+    if (!is_data) budget_.add_file(bytes.size());
     return buffers_.emplace(number, std::move(bytes)).first->second.span();
 }
 
 Buffer<std::byte> GltfFile::embedded(const JsonFields& buffer, std::string_view uri) const {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-        buffer.refuse_key("uri", fmt::format("'{}' is not data in base64", shown_text(uri)));
-    std::string_view data = uri.substr(comma + 1);
+    const std::optional<UriData> data = data_of(uri);
+    if (!data) buffer.refuse_key("uri", fmt::format("'{}' has no comma before its data", shown_text(uri)));
+    std::string_view text = data->text;
     std::string decoded;
-    if (data.find('%') != std::string_view::npos) data = decoded = percent_decoded(data);
-    auto bytes = decoded_base64(data, stop());
+    if (text.find('%') != std::string_view::npos) text = decoded = percent_decoded(text);
+    if (!data->is_base64) {
+        Buffer<std::byte> bytes{text.size()};
+        std::memcpy(bytes.data(), text.data(), text.size());
+        return bytes;
+    }
+    auto bytes = decoded_base64(text, stop());
+    if (!bytes) bytes = decoded_base64(without_blanks(text), stop());  // lines of a text, which are rare
     if (!bytes) buffer.refuse_key("uri", fmt::format("'{}' is not valid base64", shown_text(uri)));
     return std::move(*bytes);
 }

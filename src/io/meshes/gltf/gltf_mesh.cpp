@@ -55,7 +55,8 @@ std::array<std::uint64_t, 3> corners_of(Mode mode, std::uint64_t i) {
 
 Mode mode_of(const JsonFields& fields) {
     const std::uint64_t mode = whole_number_or(fields, "mode", std::uint64_t(Mode::triangles));
-    if (mode > std::uint64_t(Mode::fan)) fields.refuse_key("mode", fmt::format("{} is not a mode of glTF", mode));
+    if (mode > std::uint64_t(Mode::fan))
+        fields.refuse_key("mode", fmt::format("{} is not a mode of glTF, which are 0 to 6", mode));
     return Mode(mode);
 }
 
@@ -125,6 +126,7 @@ void MeshDecoder::add_primitive(const JsonFields& fields, std::string_view node,
         mesh.first_incomplete = fmt::format("{}: its last {} of {} vertices make no complete face and are not read",
                                             primitive.place, corners - used, corners);
     }
+    mesh.without_surface += !has_triangles(mode) && used > 0;
     const auto numbers =
         add_vertices(primitive, used, has_triangles(mode) ? mesh.shared.triangles.vertices : mesh.shared.loose);
     const std::uint64_t count = triangle_count(mode, used);
@@ -155,7 +157,10 @@ std::vector<std::uint32_t> MeshDecoder::add_vertices(const Primitive& primitive,
         if (corner % 65536 == 0) file_.checkpoint();
         const std::uint64_t vertex = primitive.indices ? primitive.indices->index_at(corner) : corner;
         if (primitive.indices && vertex == primitive.indices->largest_index())
-            refuse_index(corner, fmt::format("{}, which glTF reserves to restart primitives", vertex));
+            refuse_index(
+                corner,
+                fmt::format("{}, which glTF reserves to restart primitives; make each part a primitive of its own",
+                            vertex));
         if (vertex >= positions.count())
             refuse_index(corner, fmt::format("vertex {}, but there are {} vertices", vertex, positions.count()));
         const auto [number, is_new] = numbers_.number_of(vertex, std::uint32_t(to.size()));

@@ -23,9 +23,10 @@ struct GltfMesh {
     double largest = 0;       ///< largest coordinate, without its sign
     bool has_floats = false;  ///< true if coordinates are float32 in the file
     double step = 0;  ///< largest distance between neighbouring values of integers; 0 if no coordinates are integers
-    bool has_targets = false;      ///< true if it has morph targets
-    std::size_t incomplete = 0;    ///< number of primitives whose last vertices make no complete face
-    std::string first_incomplete;  ///< what is wrong with the first of them, without the file
+    bool has_targets = false;         ///< true if it has morph targets
+    std::size_t incomplete = 0;       ///< number of primitives whose last vertices make no complete face
+    std::size_t without_surface = 0;  ///< number of primitives that are points or lines
+    std::string first_incomplete;     ///< what is wrong with the first of them, without the file
 };
 
 /// Decodes meshes of one file. Keeps working memory from mesh to mesh.

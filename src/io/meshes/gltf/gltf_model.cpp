@@ -1,10 +1,12 @@
 #include "io/meshes/gltf/gltf_model.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
+#include "io/meshes/gltf/extensions.hpp"
 #include "io/meshes/gltf/fields.hpp"
 
 namespace octopair::io::gltf {
@@ -88,6 +90,8 @@ std::vector<std::string> GltfModel::warnings() const {
     add(tree_.note());
     add(warning_of_incomplete_faces());
     add(warning_of_motion());
+    add(warning_of_hidden_nodes());
+    add(warning_of_points());
     add(warning_of_steps());
     return lines;
 }
@@ -117,6 +121,29 @@ std::string GltfModel::warning_of_motion() const {
     std::erase(parts, "");
     if (parts.empty()) return {};
     return fmt::format("{}; this is not applied: their geometry at rest is read", fmt::join(parts, ", "));
+}
+
+std::string GltfModel::warning_of_hidden_nodes() const {
+    std::size_t hidden = 0, last = Node::no_parent;
+    for (const Instance& instance : instances()) {
+        if (std::exchange(last, instance.node) == instance.node) continue;  // a further copy of the node
+        hidden += tree_.nodes()[instance.node].is_hidden;
+    }
+    if (hidden == 0) return {};
+    return fmt::format(
+        "{} ({}); {} read like all others, because visibility is about pictures. Rules (--exclude) can leave "
+        "{} out",
+        counted(hidden, "is not visible", "are not visible"), visibility, hidden == 1 ? "it is" : "they are",
+        hidden == 1 ? "it" : "them");
+}
+
+std::string GltfModel::warning_of_points() const {
+    std::size_t count = 0;
+    for (const GltfMesh& mesh : meshes_) count += mesh.without_surface;
+    if (count == 0) return {};
+    return fmt::format("{} of points or lines, which have no surface: only boxes contain {}, not shapes and triangles",
+                       count == 1 ? "1 primitive is" : fmt::format("{} primitives are", count),
+                       count == 1 ? "it" : "them");
 }
 
 std::string GltfModel::warning_of_steps() const {

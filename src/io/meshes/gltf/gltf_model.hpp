@@ -35,6 +35,8 @@ public:
 private:
     std::string warning_of_incomplete_faces() const;
     std::string warning_of_motion() const;
+    std::string warning_of_hidden_nodes() const;
+    std::string warning_of_points() const;
     std::string warning_of_steps() const;
 
     GltfFile& file_;

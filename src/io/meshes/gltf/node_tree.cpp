@@ -31,6 +31,14 @@ std::vector<std::uint64_t> numbers_in(const JsonFields& fields, std::string_view
     return numbers;
 }
 
+/// Returns whether a node has the extension KHR_node_visibility with "visible": false.
+bool is_hidden(const JsonFields& node) {
+    const json* const extension = extension_of(node, visibility);
+    if (extension == nullptr) return false;
+    const JsonFields fields(*extension, fmt::format("{}: {}", node.place(), visibility));
+    return fields.find("visible") != nullptr && !fields.boolean("visible");
+}
+
 /// Accessors with the transforms of the copies of a node. Those that are missing are not set.
 struct Copies {
     std::optional<Accessor> translations, rotations, scales;
@@ -154,10 +162,12 @@ void NodeTree::add(const Waiting& waiting, std::vector<Waiting>& stack) {
               .label = std::move(label),
               .pose = BoundedPose(pose.rows),
               .translations = largest_of(pose),
-              .has_skin = fields.find("skin") != nullptr};
+              .has_skin = fields.find("skin") != nullptr,
+              .is_hidden = is_hidden(fields)};
     if (waiting.parent != Node::no_parent) {
         const Node& parent = nodes_[waiting.parent];
         if (parent.label.empty()) node.named_above = parent.named_above;
+        node.is_hidden |= parent.is_hidden;
         node.pose = parent.pose * node.pose;
         node.translations = parent.translations + parent.pose.largest_scale() * node.translations;
     }

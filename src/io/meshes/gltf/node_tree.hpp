@@ -44,6 +44,7 @@ struct Node {
     BoundedPose pose;
     double translations = 0;
     bool has_skin = false;
+    bool is_hidden = false;  ///< the file says that the node, or a node above it, is not shown
 };
 
 class NodeTree {

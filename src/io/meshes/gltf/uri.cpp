@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "io/files/failure.hpp"
+#include "io/files/letter_case.hpp"
 
 namespace octopair::io::gltf {
 
@@ -19,12 +20,14 @@ int hex_digit(char c) {
 
 constexpr std::uint8_t no_digit = 64;
 
-/// Value of each base64 digit; `no_digit` for other characters.
+/// Value of each base64 digit, also of those of base64url; `no_digit` for other characters.
 constexpr std::array<std::uint8_t, 256> base64_digits = [] {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<std::uint8_t, 256> values{};
     values.fill(no_digit);
     for (std::size_t i = 0; i < digits.size(); ++i) values[std::uint8_t(digits[i])] = std::uint8_t(i);
+    values['-'] = values['+'];
+    values['_'] = values['/'];
     return values;
 }();
 
@@ -56,6 +59,22 @@ std::optional<std::string_view> scheme_of(std::string_view uri) {
         if (!is_letter(c) && !(i > 0 && inside)) return std::nullopt;
     }
     return std::nullopt;
+}
+
+std::optional<UriData> data_of(std::string_view uri) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) return std::nullopt;
+    std::string_view head = uri.substr(0, comma);
+    head = head.substr(0, head.find_last_not_of(' ') + 1);
+    const std::size_t last = head.find_last_of("; ");
+    const bool is_base64 = last != std::string_view::npos && equal_in_any_case(head.substr(last + 1), "base64");
+    return UriData{uri.substr(comma + 1), is_base64};
+}
+
+std::string without_blanks(std::string_view text) {
+    std::string rest(text);
+    std::erase_if(rest, [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); });
+    return rest;
 }
 
 std::optional<Buffer<std::byte>> decoded_base64(std::string_view text, const std::stop_token& stop) {

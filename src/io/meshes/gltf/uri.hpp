@@ -17,7 +17,19 @@ std::string percent_decoded(std::string_view uri);
 /// Returns the scheme of an absolute URI, for example "https". Returns nothing for the name of a file.
 std::optional<std::string_view> scheme_of(std::string_view uri);
 
-/// Returns the bytes of base64 `text`, or nothing if it is not base64. Padding at the end may be left out.
+/// Data of a URI "data:TYPE,TEXT" or "data:TYPE;base64,TEXT".
+struct UriData {
+    std::string_view text;
+    bool is_base64;
+};
+
+/// Returns the data of a URI with the scheme "data", or nothing if it has no comma.
+std::optional<UriData> data_of(std::string_view uri);
+
+/// Returns a text without its spaces and line ends.
+std::string without_blanks(std::string_view text);
+
+/// Returns the bytes of `text` in base64 or base64url, or nothing if it is neither. Padding at the end may be left out.
 /// Throws: Error{cancelled} soon after a stop request.
 std::optional<Buffer<std::byte>> decoded_base64(std::string_view text, const std::stop_token& stop);
 

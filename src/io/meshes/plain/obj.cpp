@@ -177,7 +177,7 @@ private:
     }
 
     /// Returns the vertex of a corner "7", "7/1", "7//3" or "7/1/3". Negative numbers count back from the last vertex.
-    std::uint32_t corner_of(std::string_view word) const {
+    std::uint32_t corner_of(std::string_view word) {
         std::int64_t number = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
         const bool whole = error == std::errc() && (end == word.data() + word.size() || *end == '/');
@@ -190,10 +190,18 @@ private:
             lines_.refuse_line(
                 fmt::format("a corner of a face is vertex {}, but there are {} before it", number, count));
         }
+        if (number > largest_corner_) {
+            largest_corner_ = number;
+            line_of_largest_ = lines_.line_number();
+        }
         return std::uint32_t(number > 0 ? number - 1 : count + number);
     }
 
     std::vector<PlainMesh> finish() {
+        if (largest_corner_ > std::int64_t(vertices_.size())) {
+            refuse(file_.path, fmt::format("line {}: a corner of a face is vertex {}, but the file has {}",
+                                           line_of_largest_, largest_corner_, vertices_.size()));
+        }
         std::erase_if(parts_, [](const ObjPart& part) { return part.mesh.ends.empty(); });
         name_equal_groups(parts_);
         std::vector<PlainMesh> meshes;
@@ -214,10 +222,6 @@ private:
         for (PlainMesh& mesh : meshes) {
             std::vector<std::uint32_t> used;
             for (std::uint32_t& corner : mesh.corners) {
-                if (corner >= vertices_.size()) {
-                    refuse(file_.path, fmt::format("a face has vertex {}, but there are {}", std::uint64_t(corner) + 1,
-                                                   vertices_.size()));
-                }
                 if (numbers[corner] == unused) {
                     numbers[corner] = std::uint32_t(used.size());
                     used.push_back(corner);
@@ -237,7 +241,9 @@ private:
     std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // of parts, by object and group
     std::size_t current_ = 0;                                             // part that faces are added to
     std::string object_, group_, material_;
-    bool material_is_new_ = false;  // true if the current mesh may lack the material
+    bool material_is_new_ = false;     // true if the current mesh may lack the material
+    std::int64_t largest_corner_ = 0;  // the largest positive number of a corner
+    std::uint64_t line_of_largest_ = 0;
     UnreadLines unknown_, freeform_, calls_;
 };
 

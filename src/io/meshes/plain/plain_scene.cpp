@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -67,14 +68,18 @@ void keep_used_vertices(PlainMesh& mesh) {
     for (std::uint32_t& corner : mesh.corners) corner = numbers[corner];
 }
 
+/// Returns the names of meshes. If a name would occur twice, "#" and the position of the mesh follow it.
 std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const std::string& path) {
     const std::string file = std::filesystem::path(path).filename().string();
     // The only solid of an STL file often has the name of the program that wrote it.
     const bool by_file = meshes.size() == 1 && (meshes[0].name.empty() || format_ending(path) == ".stl");
     if (by_file) return {file};
     std::vector<std::string> names;
+    std::unordered_set<std::string> known;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        names.push_back(fmt::format("{}/{}", file, meshes[i].name.empty() ? fmt::format("#{}", i) : meshes[i].name));
+        std::string name = fmt::format("{}/{}", file, meshes[i].name.empty() ? fmt::format("#{}", i) : meshes[i].name);
+        while (!known.insert(name).second) name += fmt::format("#{}", i);
+        names.push_back(std::move(name));
     }
     return names;
 }
@@ -139,8 +144,11 @@ void add_shapes(std::vector<PlainMesh> meshes, const std::string& path, LoadedSc
 /// Throws: Error{bad_input} if a coordinate is beyond the range of float32.
 float rounded(double at, const std::string& path) {
     const auto value = float(at);
-    if (!std::isfinite(value))
-        refuse(path, fmt::format("the coordinate {} is beyond the range of float32", number_text(at)));
+    if (!std::isfinite(value)) {
+        refuse(path, fmt::format("the coordinate {} is beyond the range of float32, which boxes of triangles have; use "
+                                 "--objects node",
+                                 number_text(at)));
+    }
     return value;
 }
 

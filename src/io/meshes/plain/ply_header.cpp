@@ -22,7 +22,8 @@ PlyScalar scalar_of(TextLines& lines) {
         {"char", "int8", {1, Kind::integer}},   {"uchar", "uint8", {1, Kind::unsigned_integer}},
         {"short", "int16", {2, Kind::integer}}, {"ushort", "uint16", {2, Kind::unsigned_integer}},
         {"int", "int32", {4, Kind::integer}},   {"uint", "uint32", {4, Kind::unsigned_integer}},
-        {"float", "float32", {4, Kind::real}},  {"double", "float64", {8, Kind::real}}};
+        {"float", "float32", {4, Kind::real}},  {"double", "float64", {8, Kind::real}},
+        {"int64", "int64", {8, Kind::integer}}, {"uint64", "uint64", {8, Kind::unsigned_integer}}};
     const std::string_view word = lines.word();
     for (const NamedScalar& named : scalars) {
         if (word == named.name || word == named.other_name) return named.scalar;
@@ -51,14 +52,17 @@ PlyEncoding encoding_of(TextLines& lines) {
     if (word == "ascii") return PlyEncoding::text;
     if (word == "binary_little_endian") return PlyEncoding::little_endian;
     if (word == "binary_big_endian") return PlyEncoding::big_endian;
-    lines.refuse_line("the format is not ascii, binary_little_endian or binary_big_endian");
+    lines.refuse_line(
+        fmt::format("the format is '{}', not ascii, binary_little_endian or binary_big_endian", shown(word)));
 }
 
 }  // namespace
 
 PlyHeader read_ply_header(TextLines& lines) {
     lines.need("'ply'");
-    if (lines.word() != "ply") lines.refuse_line("'ply' is expected");
+    if (lines.peek() != "ply")
+        lines.refuse_line(fmt::format("a PLY file begins with 'ply', not '{}'", shown(lines.peek())));
+    (void)lines.word();
     PlyHeader header;
     for (;;) {
         lines.need("the rest of the header");

@@ -21,14 +21,22 @@ std::string_view without_space_before(std::string_view text) {
     return text;
 }
 
+/// Fortran writes the exponent of a number with D: 1.5D+03.
+void replace_fortran_exponent(std::string& number) {
+    const std::size_t at = number.find_first_of("dD");
+    if (at == std::string::npos || at == 0) return;
+    const char before = number[at - 1];
+    if ((before >= '0' && before <= '9') || before == '.') number[at] = 'e';
+}
+
 }  // namespace
 
 bool TextLines::next() {
     constexpr std::uint64_t lines_between_checks = 4096;
     while (lines_.next()) {
         number_ = lines_.number();
-        if (number_ % lines_between_checks == 0) file_.checkpoint(lines_.offset());
         line_ = lines_.line();
+        if (number_ % lines_between_checks == 0) checkpoint();
         if (comment_ != 0) cut(comment_);
         line_ = without_space_before(line_);
         if (!line_.empty()) return true;
@@ -37,7 +45,22 @@ bool TextLines::next() {
 }
 
 void TextLines::need(std::string_view what) {
-    if (!next()) refuse(file_.path, fmt::format("ends where {} should follow", what));
+    if (next()) return;
+    refuse(file_.path, number_ == 0
+                           ? fmt::format("has no text, but {} is needed", what)
+                           : fmt::format("the file ends after line {}, where {} should follow; copy or save it again",
+                                         number_, what));
+}
+
+std::uint64_t TextLines::skip_words() {
+    std::uint64_t words = 0;
+    while (!next_word().empty()) ++words;
+    return words;
+}
+
+void TextLines::find_distant_word(std::string_view what) {
+    line_ = without_space_before(line_);
+    if (line_.empty()) need(what);
 }
 
 void TextLines::join_continued(char mark) {
@@ -86,13 +109,14 @@ double TextLines::number(std::string_view what) {
 
 double TextLines::unusual_number(std::string_view what) {
     const std::string_view given = word();
-    std::string_view text = given;
-    if (text.front() == '+' && !text.starts_with("+-")) text.remove_prefix(1);
+    std::string text(given);
+    if (text.front() == '+' && !text.starts_with("+-")) text.erase(0, 1);
+    replace_fortran_exponent(text);
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = end == text.data() + text.size() && !text.empty();
     if (whole && error == std::errc::result_out_of_range) {
-        value = std::strtod(std::string(text).c_str(), nullptr);  // 0, the least numbers, or infinity
+        value = std::strtod(text.c_str(), nullptr);  // 0, the least numbers, or infinity
     } else if (!whole || error != std::errc()) {
         const bool comma = given.find(',') != std::string_view::npos;
         refuse_line(fmt::format("{} is '{}', not a number{}", what, shown(given),
@@ -120,7 +144,7 @@ void TextLines::refuse_integer(std::string_view what, std::uint64_t most) {
     if (text.empty()) refuse_line(fmt::format("the line ends where {} should follow", what));
     if (text.find_first_not_of("0123456789") != std::string_view::npos)
         refuse_line(fmt::format("{} is '{}', not a number without sign", what, shown(text)));
-    refuse_line(fmt::format("{} is {}; at most {} is possible", what, shown(text), most));
+    refuse_line(fmt::format("{} is {}, but at most {} is possible; save the file again", what, shown(text), most));
 }
 
 void TextLines::refuse_line(std::string_view why) const {

@@ -1,21 +1,15 @@
 // TextLines: the lines of a text, their words and numbers.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "io/files/letter_case.hpp"
 #include "io/files/line_splitter.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
 
 namespace octopair::io {
-
-/// Returns whether two texts are equal but for the case of ASCII letters.
-inline bool equal_in_any_case(std::string_view a, std::string_view b) {
-    constexpr auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return small(x) == small(y); });
-}
 
 class TextLines {
 public:
@@ -43,13 +37,22 @@ public:
     bool contains(char c) const { return line_.find(c) != std::string_view::npos; }
     /// Returns the rest of the line, without white space around it.
     std::string_view rest();
+    /// Skips the rest of the line. Returns its number of words.
+    std::uint64_t skip_line() { return line_.empty() ? 0 : skip_words(); }
     /// Removes the rest of the line from `comment` on.
     void cut(char comment) { line_ = line_.substr(0, line_.find(comment)); }
+    /// Goes to the next word of the text, on this line or a later one. The end of the text is an error. `what`: what is expected.
+    void find_word(std::string_view what) {
+        const bool is_next = line_.size() > 1 && line_[0] == ' ' && line_[1] > ' ';
+        if (!is_next) find_distant_word(what);
+    }
     /// Returns the next word as a number. Throws: Error{bad_input} if it is none, or not finite.
     double number(std::string_view what);
     /// Returns the next word as an integer of at most `most`.
     std::uint64_t integer(std::string_view what, std::uint64_t most);
 
+    /// Calls FileContent::checkpoint(). Readers of long lines call this from time to time; next() does so, too.
+    void checkpoint() const { file_.checkpoint(lines_.offset() - line_.size()); }
     /// Throws: Error{bad_input} with the number of the line.
     [[noreturn]] void refuse_line(std::string_view why) const;
     /// Number of the line; of joined lines, the first.
@@ -59,6 +62,8 @@ public:
 
 private:
     std::string_view next_word();
+    std::uint64_t skip_words();
+    void find_distant_word(std::string_view what);
     /// Like number(), for words that need a closer look: wrong ones, and those beyond the range of float64.
     double unusual_number(std::string_view what);
     [[noreturn]] void refuse_integer(std::string_view what, std::uint64_t most);
