@@ -38,10 +38,14 @@ struct OffFile {
         write_space();
         text += std::to_string(faces);
         if (lines == OffLines::own) {
-            text += spelling.pick({"", " 0", "\t7"});
+            const std::string edges = spelling.pick({"", " 0", "\t7"});
+            has_edges = !edges.empty();
+            text += edges;
             end_line();
         } else {
-            write_space();
+            if (short_colours)
+                text += spelling.blank();  // on the next line, it could be a coordinate before a colour of four
+            if (!short_colours) write_space();
             text += "7";
             separate();
         }
@@ -52,7 +56,8 @@ struct OffFile {
 
     void write_end() {
         if (spelling.one_in(4)) text.resize(text.size() - spelling.line_end().size());
-        if (without_stated || !spelling.one_in(8)) return;
+        // Without the number of edges, or what the keyword says, such a file may be valid with other numbers.
+        if (without_stated || !has_edges || !spelling.one_in(8)) return;
         text += spelling.line_end() + "3 0 1 2";
         warnings = 1;
     }
@@ -130,7 +135,7 @@ struct OffFile {
     }
 
     std::string keyword;
-    bool short_colours = false;
+    bool short_colours = false, has_edges = false;
     bool without_stated = false;  ///< vertices lack what the keyword says
 };
 

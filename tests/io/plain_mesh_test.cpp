@@ -362,6 +362,28 @@ TEST(PlainMesh, CuttingCanBeStopped) {
     (void)error_of(ErrorCode::cancelled, [&] { (void)io::cut_into_triangles(mesh, crossing, source.get_token()); });
 }
 
+TEST(PlainMesh, WorkAfterTheTextCanBeStopped) {
+    const TemporaryDirectory directory;
+    std::string solid = "solid", groups = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 4096; ++i) {
+        solid += " facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet";
+        groups += "g " + std::to_string(i) + "\nf 1 2 3\n";
+    }
+    write_file(directory.file("m.stl"), solid + " endsolid");
+    write_file(directory.file("m.obj"), groups);
+    for (const auto& [name, last] : std::vector<std::pair<std::string, double>>{{"m.stl", 0.9}, {"m.obj", 1}}) {
+        // The stop comes when the text is read, and before the meshes are named.
+        std::stop_source source;
+        const auto progress = [&, last = last](double part) {
+            if (part >= last) source.request_stop();
+        };
+        (void)error_of(ErrorCode::cancelled, [&] {
+            (void)io::read_scene(directory.file(name), {io::MeshObjects::node, false, progress}, source.get_token());
+        });
+        EXPECT_TRUE(source.stop_requested()) << name;
+    }
+}
+
 TEST(PlainMesh, CrossingFacesAreTold) {
     const TemporaryDirectory directory;
     const std::string vertices = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\n";

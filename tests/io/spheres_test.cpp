@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "io/temporary.hpp"
 
 namespace octopair::test {
 namespace {
@@ -86,6 +89,15 @@ TEST(Spheres, DenormalsAndEnds) {
     const double huge = std::numeric_limits<double>::max();
     EXPECT_TRUE(std::isinf(io::box_of_sphere(io::Sphere<double>{{huge, 0, 0}, huge}).max[0]));
     EXPECT_EQ(io::box_of_sphere(io::Sphere<double>{{huge, 0, 0}, huge}).min[0], 0.0);
+}
+
+TEST(Spheres, ConversionCanBeStopped) {
+    std::stop_source source;
+    source.request_stop();
+    const std::vector<io::Sphere<float>> spheres = {{{0, 0, 0}, 1}};
+    std::vector<Box3f> boxes(1);
+    const io::SpherePlace place{"f.npy", 0, source.get_token()};
+    (void)error_of(ErrorCode::cancelled, [&] { io::boxes_of_spheres<float>(spheres, boxes, place); });
 }
 
 }  // namespace

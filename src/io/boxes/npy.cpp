@@ -112,7 +112,7 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
         } else {
             read_rows(rows.begin, spheres.span(), stop);
         }
-        boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin});
+        boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin, stop});
         return boxes;
     }
     if (header_.fortran_order) {
@@ -220,11 +220,16 @@ Buffer<double> read_padding(const std::string& path, const std::stop_token& stop
     if (header.type == NpyType::float64) {
         read_numbers(file, header, 0, padding.span(), stop);
     } else {
-        Buffer<float> narrow{padding.size()};
-        read_numbers(file, header, 0, narrow.span(), stop);
-        std::copy_n(narrow.data(), narrow.size(), padding.data());
+        constexpr std::size_t piece = std::size_t(1) << 20;  // a stop request is seen before each
+        Buffer<float> narrow{std::min(piece, padding.size())};
+        for (std::size_t at = 0; at < padding.size(); at += piece) {
+            const auto some = narrow.span().first(std::min(piece, padding.size() - at));
+            read_numbers(file, header, at, some, stop);
+            std::copy_n(some.data(), some.size(), padding.data() + at);
+        }
     }
     for (std::size_t i = 0; i < padding.size(); ++i) {
+        if (i % (std::size_t(1) << 20) == 0 && stop.stop_requested()) cancel();
         if (padding[i] >= 0 && std::isfinite(padding[i])) continue;
         refuse(path, fmt::format("object {}: padding is {}, not a finite number >= 0", i, number_text(padding[i])));
     }

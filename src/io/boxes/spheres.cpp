@@ -55,6 +55,7 @@ Box<Real> box_of_sphere(const Sphere<Real>& sphere) {
 template <typename Real>
 void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, const SpherePlace& place) {
     for (std::size_t i = 0; i < spheres.size(); ++i) {
+        if (i % 65536 == 0 && place.stop.stop_requested()) cancel();
         if (!is_finite(spheres[i]) || !(spheres[i].radius >= 0)) refuse_sphere(spheres[i], place.begin + i, place.file);
         boxes[i] = box_of_sphere(spheres[i]);
         if (!is_finite_box(boxes[i])) refuse_sphere(spheres[i], place.begin + i, place.file);

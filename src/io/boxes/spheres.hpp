@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <string_view>
 
 #include "octopair/objects.hpp"
@@ -24,15 +25,16 @@ struct Sphere {
 template <typename Real>
 Box<Real> box_of_sphere(const Sphere<Real>& sphere);
 
-/// Position of spheres in a file, for messages.
+/// Position of spheres in a file, for messages, and what stops their conversion.
 struct SpherePlace {
     std::string_view file;
     std::uint64_t begin = 0;  ///< object number of the first sphere
+    std::stop_token stop = {};
 };
 
 /// Writes the box of each sphere to `boxes`. Requires: both spans have the same size.
 /// Throws: Error{bad_input} that names the file and the object for a number that is not finite, a negative radius, or a bound
-/// beyond the range of Real.
+/// beyond the range of Real; Error{cancelled} after a stop request.
 template <typename Real>
 void boxes_of_spheres(std::span<const Sphere<Real>> spheres, std::span<Box<Real>> boxes, const SpherePlace& place);
 

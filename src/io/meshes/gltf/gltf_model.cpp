@@ -34,7 +34,9 @@ std::vector<bool> animated_nodes(const GltfFile& file) {
     const auto none = json::array();
     for (const json& animation : root.contains("animations") ? root["animations"] : none) {
         if (!animation.is_object() || !animation.contains("channels")) continue;
+        std::size_t channels = 0;
         for (const json& channel : animation["channels"]) {
+            if (++channels % 4096 == 0) file.checkpoint();
             const json* const node = channel.is_object() && channel.contains("target") &&
                                              channel["target"].is_object() && channel["target"].contains("node")
                                          ? &channel["target"]["node"]

@@ -115,6 +115,7 @@ std::vector<std::uint64_t> NodeTree::find_roots() {
     }
     std::vector<bool> is_child(visited_.size());
     for (std::size_t i = 0; i < visited_.size(); ++i) {
+        if (i % 1024 == 0) file_.checkpoint();
         for (const std::uint64_t child : numbers_in(file_.item("nodes", i), "children")) {
             if (child < is_child.size()) is_child[child] = true;
         }
@@ -137,6 +138,7 @@ void NodeTree::push(const std::vector<std::uint64_t>& siblings, std::size_t pare
     std::unordered_map<std::string_view, std::size_t> counts;
     names.reserve(siblings.size());
     for (const std::uint64_t number : siblings) {
+        if (names.size() % 1024 == 0) file_.checkpoint();
         names.push_back(mesh_name(file_.item("nodes", number)));
         ++counts[names.back()];
     }

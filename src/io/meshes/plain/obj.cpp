@@ -10,6 +10,7 @@
 #include <charconv>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,10 +57,18 @@ struct ObjPart {
 };
 
 /// Groups of several objects may have one name. They get the object's name in front.
-void name_equal_groups(std::vector<ObjPart>& parts) {
-    std::map<std::string, std::size_t> uses;
-    for (const ObjPart& part : parts) ++uses[part.mesh.name];
+void name_equal_groups(std::vector<ObjPart>& parts, const FileContent& file) {
+    std::unordered_map<std::string, std::size_t> uses;
+    std::size_t steps = 0;
+    const auto check = [&] {
+        if (++steps % 4096 == 0) file.checkpoint(file.bytes.size());
+    };
+    for (const ObjPart& part : parts) {
+        check();
+        ++uses[part.mesh.name];
+    }
     for (ObjPart& part : parts) {
+        check();
         if (uses[part.mesh.name] > 1 && part.mesh.name != part.object)
             part.mesh.name = part.object + '/' + part.mesh.name;
     }
@@ -203,7 +212,7 @@ private:
                                            line_of_largest_, largest_corner_, vertices_.size()));
         }
         std::erase_if(parts_, [](const ObjPart& part) { return part.mesh.ends.empty(); });
-        name_equal_groups(parts_);
+        name_equal_groups(parts_, file_);
         std::vector<PlainMesh> meshes;
         meshes.reserve(parts_.size());
         for (ObjPart& part : parts_) meshes.push_back(std::move(part.mesh));
@@ -219,9 +228,11 @@ private:
     void give_vertices(std::vector<PlainMesh>& meshes) const {
         constexpr std::uint32_t unused = ~std::uint32_t(0);
         std::vector<std::uint32_t> numbers(vertices_.size(), unused);
+        std::size_t corners = 0;
         for (PlainMesh& mesh : meshes) {
             std::vector<std::uint32_t> used;
             for (std::uint32_t& corner : mesh.corners) {
+                if (++corners % 65536 == 0) file_.checkpoint(file_.bytes.size());
                 if (numbers[corner] == unused) {
                     numbers[corner] = std::uint32_t(used.size());
                     used.push_back(corner);

@@ -71,12 +71,15 @@ struct OffContent {
     std::uint64_t vertices = 0, faces = 0;
     bool edges_are_open = false;    ///< the line ends after the number of faces
     bool is_uniform = true;         ///< as many words follow each vertex, and a face has a colour or nothing after it
-    bool is_stated = true;          ///< the words after vertices are those that the keyword states, or there are none
+    bool is_stated = true;          ///< as many words follow vertices as the keyword states
+    bool is_bare = true;            ///< no words follow vertices
     std::uint64_t unread_line = 0;  ///< first line after the last face; 0: none
     std::uint64_t last_line = 0;    ///< number of the last line that was read
     std::optional<Error> error;     ///< why the file is invalid in this layout
 
     bool is_complete() const { return !error && unread_line == 0; }
+    /// Requires: the file was read by lines. Returns whether it cannot have another layout.
+    bool is_certain() const { return is_complete() && is_uniform && (is_stated || is_bare); }
 };
 
 /// Reads a file in one layout.
@@ -161,7 +164,8 @@ private:
         const std::uint64_t words = lines_.skip_line();
         if (content_.mesh.vertices.size() == 1) words_after_vertex_ = words;
         content_.is_uniform &= words == words_after_vertex_;
-        content_.is_stated &= words == 0 || is_stated(words);
+        content_.is_stated &= is_stated(words);
+        content_.is_bare &= words == 0;
     }
     /// Returns whether the keyword says that so many numbers follow the coordinates of a vertex.
     bool is_stated(std::uint64_t words) const {
@@ -238,7 +242,7 @@ OffContent read_stream(FileContent file, const OffContent& by_lines) {
 /// Returns the content in the layout that suits a file. It may have an error.
 OffContent read_content(const FileContent& file) {
     OffContent by_lines = OffParser(file, {}).parse();
-    if (by_lines.is_complete() && by_lines.is_uniform && by_lines.is_stated) return by_lines;
+    if (by_lines.is_certain()) return by_lines;
     OffContent stream = read_stream(file, by_lines);
     if (stream.is_complete()) return stream;
     if (!by_lines.error || !stream.error) return by_lines;

@@ -68,8 +68,14 @@ void keep_used_vertices(PlainMesh& mesh) {
     for (std::uint32_t& corner : mesh.corners) corner = numbers[corner];
 }
 
+/// Loops over meshes call this for each. Throws: Error{cancelled} now and then after a stop request.
+void check_stop(std::size_t mesh, const std::stop_token& stop) {
+    if (mesh % 4096 == 0 && stop.stop_requested()) cancel();
+}
+
 /// Returns the names of meshes. If a name would occur twice, "#" and the position of the mesh follow it.
-std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const std::string& path) {
+std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const std::string& path,
+                                  const std::stop_token& stop) {
     const std::string file = std::filesystem::path(path).filename().string();
     // The only solid of an STL file often has the name of the program that wrote it.
     const bool by_file = meshes.size() == 1 && (meshes[0].name.empty() || format_ending(path) == ".stl");
@@ -77,6 +83,7 @@ std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const st
     std::vector<std::string> names;
     std::unordered_set<std::string> known;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
+        check_stop(i, stop);
         std::string name = fmt::format("{}/{}", file, meshes[i].name.empty() ? fmt::format("#{}", i) : meshes[i].name);
         while (!known.insert(name).second) name += fmt::format("#{}", i);
         names.push_back(std::move(name));
@@ -85,10 +92,12 @@ std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const st
 }
 
 /// Returns the details of all meshes. `names`: their names, after names_of().
-ObjectDetails details_of(const std::vector<PlainMesh>& meshes, const std::vector<std::string>& names) {
+ObjectDetails details_of(const std::vector<PlainMesh>& meshes, const std::vector<std::string>& names,
+                         const std::stop_token& stop) {
     ObjectDetails details;
     DetailsBuilder builder(details);
     for (std::size_t i = 0; i < meshes.size(); ++i) {
+        check_stop(i, stop);
         const std::size_t slash = names[i].find('/');
         const bool is_part = slash != std::string::npos;
         DetailTexts texts;
@@ -113,13 +122,17 @@ Box3d box_of(const std::vector<Point3d>& places) {
 }
 
 /// Adds the meshes as objects with boxes. Removes meshes and vertices that are not used.
-void add_objects(std::vector<PlainMesh>& meshes, const std::string& path, LoadedScene& scene) {
-    for (PlainMesh& mesh : meshes) keep_used_vertices(mesh);
+void add_objects(std::vector<PlainMesh>& meshes, const std::string& path, LoadedScene& scene,
+                 const std::stop_token& stop) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        check_stop(i, stop);
+        keep_used_vertices(meshes[i]);
+    }
     std::erase_if(meshes, [](const PlainMesh& mesh) { return mesh.vertices.empty(); });
     scene.objects = meshes.size();
-    scene.names = names_of(meshes, path);
+    scene.names = names_of(meshes, path, stop);
     if (meshes.empty()) scene.names.clear();
-    scene.details = details_of(meshes, scene.names);
+    scene.details = details_of(meshes, scene.names, stop);
     Buffer<Box3d> boxes{meshes.size()};
     std::transform(meshes.begin(), meshes.end(), boxes.data(),
                    [](const PlainMesh& mesh) { return box_of(mesh.vertices); });
@@ -156,8 +169,8 @@ float rounded(double at, const std::string& path) {
 LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& path, std::vector<std::string>& warnings,
                              const std::stop_token& stop) {
     LoadedTriangles loaded;
-    loaded.owner_names = names_of(meshes, path);
-    loaded.owner_details = details_of(meshes, loaded.owner_names);
+    loaded.owner_names = names_of(meshes, path, stop);
+    loaded.owner_details = details_of(meshes, loaded.owner_names, stop);
     CrossingFaces crossing;
     for (std::size_t owner = 0; owner < meshes.size(); ++owner) {
         meshes[owner].name = loaded.owner_names[owner];
@@ -206,7 +219,7 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
     LoadedScene scene;
     std::vector<PlainMesh> meshes = read_meshes(path, stop, content.progress, scene);
     if (content.objects == MeshObjects::node) {
-        add_objects(meshes, path, scene);
+        add_objects(meshes, path, scene, stop);
         if (content.shapes) add_shapes(std::move(meshes), path, scene, stop);
         return scene;
     }
@@ -223,7 +236,7 @@ LoadedScene read_plain_scene(const std::string& path, const SceneContent& conten
 shape::Mesh read_plain_mesh(const std::string& path, LoadedScene& scene, const std::stop_token& stop) {
     shape::Mesh whole;
     std::vector<PlainMesh> meshes = read_meshes(path, stop, {}, scene);
-    const std::vector<std::string> names = names_of(meshes, path);
+    const std::vector<std::string> names = names_of(meshes, path, stop);
     CrossingFaces crossing;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         meshes[i].name = names[i];
