@@ -91,7 +91,7 @@ private:
             at = number.value;
         }
         vertices_.push_back(place);
-        text_ += spelling_.pick({"", "", " 1.0", " 0.5 0.25 1", " 1 0.5 0.25 1"});  // a weight, or a colour
+        text_ += spelling_.pick({"", "", " 1.0", " 0.5", " 0.5 0.25 1", " 1 0.5 0.25 1"});  // a weight, or a colour
         end_line(true);
     }
 
