@@ -57,7 +57,7 @@ struct OffFile {
     void write_end() {
         if (spelling.one_in(4)) text.resize(text.size() - spelling.line_end().size());
         // Without the number of edges, or what the keyword says, such a file may be valid with other numbers.
-        if (without_stated || !has_edges || !spelling.one_in(8)) return;
+        if (without_stated || short_colours || !has_edges || !spelling.one_in(8)) return;
         text += spelling.line_end() + "3 0 1 2";
         warnings = 1;
     }

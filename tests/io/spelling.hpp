@@ -96,12 +96,7 @@ public:
         if (text.starts_with("0.") && one_in(2)) text.erase(0, 1);
         if (text == ".") text = "0.";
         const double value = std::strtod(text.c_str(), nullptr);
-        if (!std::isfinite(value)) return {"1e308", 1e308};  // rounded upwards
-        if (one_in(8)) {  // Fortran
-            std::replace(text.begin(), text.end(), 'e', 'd');
-            std::replace(text.begin(), text.end(), 'E', 'D');
-        }
-        return {text, value};
+        return std::isfinite(value) ? SpelledNumber{text, value} : SpelledNumber{"1e308", 1e308};  // rounded upwards
     }
     SpelledNumber spelled() { return spelled(number()); }
 

@@ -78,8 +78,8 @@ struct OffContent {
     std::optional<Error> error;     ///< why the file is invalid in this layout
 
     bool is_complete() const { return !error && unread_line == 0; }
-    /// Requires: the file was read by lines. Returns whether it cannot have another layout.
-    bool is_certain() const { return is_complete() && is_uniform && (is_stated || is_bare); }
+    /// Requires: the file was read by lines. Returns whether all lines are as the format says.
+    bool has_lines() const { return !error && is_uniform && (is_stated || is_bare); }
 };
 
 /// Reads a file in one layout.
@@ -215,6 +215,8 @@ private:
 
 /// Returns the layouts that a file may have as a stream, those that the format prescribes first. `content`: what reading by lines found.
 std::vector<OffLayout> stream_layouts(const OffContent& content) {
+    constexpr OffLayout prescribed = {false, true, true, false};
+    if (content.has_lines()) return {prescribed};
     std::vector<OffLayout> layouts;
     for (const bool edges : {true, false}) {
         if (!edges && !content.edges_are_open) continue;
@@ -242,7 +244,7 @@ OffContent read_stream(FileContent file, const OffContent& by_lines) {
 /// Returns the content in the layout that suits a file. It may have an error.
 OffContent read_content(const FileContent& file) {
     OffContent by_lines = OffParser(file, {}).parse();
-    if (by_lines.is_certain()) return by_lines;
+    if (by_lines.is_complete() && by_lines.has_lines()) return by_lines;
     OffContent stream = read_stream(file, by_lines);
     if (stream.is_complete()) return stream;
     if (!by_lines.error || !stream.error) return by_lines;
