@@ -18,7 +18,13 @@ def _choice(*words):
     return value
 
 
-VALUES = {b"listen": bytes, b"state": bytes, b"log": _choice(b"text", b"json"), b"threads": Threads.value, b"max-memory": Bytes.value,
+def _text(data):
+    if not data:
+        raise Refused
+    return data
+
+
+VALUES = {b"listen": _text, b"state": _text, b"log": _choice(b"text", b"json"), b"threads": Threads.value, b"max-memory": Bytes.value,
           b"grace": Length.value, b"quiet": _choice(b"true", b"false")}
 
 
@@ -31,7 +37,7 @@ def _written(source, value):
 
 def make(source):
     """Returns a valid file."""
-    values = {"listen": source.choice(("127.0.0.1:7788", "unix:/run/a b/socket", "systemd", "[::1]:80", "{}")), "state": source.choice(("jobs", "/var/lib/ö", "")),
+    values = {"listen": source.choice(("127.0.0.1:7788", "unix:/run/a b/socket", "systemd", "[::1]:80", "{}")), "state": source.choice(("jobs", "/var/lib/ö", "a b")),
               "log": source.choice(("text", "json")), "threads": str(source.randrange(65)), "max-memory": source.choice(("8G", "65536", "0")),
               "grace": source.choice(("30", "1.5", "0")), "quiet": source.choice(("true", "false"))}
     lines = []
