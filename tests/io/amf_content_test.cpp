@@ -67,6 +67,14 @@ TEST(AmfContent, FaultsAreRefusedWithTheirLines) {
     EXPECT_EQ(refusal(amf_object("1", first_volume) +
                       "<constellation id='2'><instance objectid='1'><rx>45</rx></instance></constellation>"),
               "line 2: an instance is rotated (<rx>), which Assimp reads wrongly; export it as STL, OBJ or 3MF");
+    const auto placed = [&](const std::string& how) {
+        return amf_object("1", first_volume) + "<constellation id='2'><instance objectid='1'>" + how +
+               "</instance></constellation>";
+    };
+    EXPECT_EQ(refusal(placed("<scalex>1</scalex><scale>2</scale>")),
+              "line 2: an instance is scaled (<scale>), which Assimp does not read; export it as STL, OBJ or 3MF");
+    EXPECT_EQ(refusal(placed("<mirrory>0</mirrory><mirrorx>1</mirrorx>")),
+              "line 2: an instance is mirrored (<mirrorx>), which Assimp does not read; export it as STL, OBJ or 3MF");
     EXPECT_EQ(refusal_of_text(".amf", "<amf>\n<object></amf>"),
               "line 2: is not well-formed XML (mismatched tag); export the file again");
 }

@@ -113,6 +113,10 @@ TEST(DxfContent, WhatIsLostIsCounted) {
                                      "inserts of block 'none', which the file does not have (1)"}));
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_NE(scene.warnings[0].find(": Assimp does not read entities of type 3DSOLID (2), "), std::string::npos);
+    // A circle is a curve, but with a thickness it is the wall of a cylinder.
+    const std::string circle = "0\nCIRCLE\n8\n0\n10\n0\n20\n0\n30\n0\n40\n50\n";
+    EXPECT_TRUE(read_dxf(one_face + circle).not_read.empty());
+    EXPECT_EQ(read_dxf(one_face + circle + "39\n3\n").not_read, Texts{"entities of type CIRCLE (1)"});
     EXPECT_EQ(import_text(".dxf", dxf_section("ENTITIES", one_face)).not_read,
               Texts{"what may follow the last section: the file has no EOF (1)"});
 }

@@ -29,9 +29,9 @@ TEST(OpengexContent, WhatAssimpReadsRightlyIsAccepted) {
 }
 
 TEST(OpengexContent, NodesThatAreLeftOutAreCounted) {
-    const ImportedScene scene =
-        import_text(".ogex", "Node $a\n{\n" + ogex_node("") + "}\n" + ogex_node("") + ogex_mesh());
-    EXPECT_EQ(scene.not_read, Texts{"geometry in structures of type Node or BoneNode (1)"});
+    const ImportedScene scene = import_text(
+        ".ogex", "Node $a\n{\n" + ogex_node("") + "}\n" + ogex_node(ogex_node("") + ogex_node("")) + ogex_mesh());
+    EXPECT_EQ(scene.not_read, Texts{"geometry within other nodes (3)"});
 }
 
 TEST(OpengexContent, FaultsAreRefusedWithTheirLines) {

@@ -211,6 +211,14 @@ TEST(ThreeMf, TypesOfObjects) {
     }
     expect_in(three_mf_refusal(model("other")), "line 1: the build has object 1 of the type 'other'");
     expect_in(three_mf_refusal(model("odd")), "object 1: the type is 'odd', not one of model, support");
+    // Slicers write modifiers and blockers of supports as components of the type other.
+    const std::string modified =
+        object_text(1, tetrahedron()) + object_text(2, tetrahedron(), "type='other'") +
+        "<object id='3'><components><component objectid='1'/><component objectid='2'/></components></object>";
+    const auto printed = three_mf_scene(package_of(model_text(modified, "<item objectid='3'/>")));
+    EXPECT_EQ(printed.objects, 1u);
+    EXPECT_EQ(printed.warnings,
+              Names{"f.3mf: 1 object of the type other within other objects: left out, because they are not printed"});
     const std::string hidden = model_text(object_text(1, tetrahedron(), "type='other'"), "");
     EXPECT_EQ(three_mf_scene(package_of(hidden)).objects, 0u);
 }

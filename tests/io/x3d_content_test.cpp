@@ -108,6 +108,20 @@ TEST(X3dContent, FilesOfInlineNodesAreRead) {
     EXPECT_EQ(text_of_box(std::get<Buffer<Box3d>>(scene.boxes)[0]), "14 -2 -3 16 2 3");
 }
 
+TEST(X3dContent, AnglesHaveTheUnitOfTheFile) {
+    const auto turned = [](const std::string& head, const std::string& angle) {
+        return import_text(".x3d",
+                           "<X3D><head>" + head + "</head><Scene><Transform DEF='t' rotation='0 0 1 " + angle +
+                               "' translation='5 0 0'><Shape><Box size='2 4 6'/></Shape></Transform></Scene></X3D>");
+    };
+    const std::string degrees = "<unit category='angle' name='degree' conversionFactor='0.017453292519943295'/>";
+    EXPECT_EQ(boxes_named(turned(degrees, "180"), "t"), boxes_named(turned("", "3.141592653589793"), "t"));
+    EXPECT_EQ(turned("<unit category='length' name='mm' conversionFactor='0.001'/>", "0").not_read,
+              Texts{"the unit of lengths, which are read as they are (1)"});
+    EXPECT_EQ(refusal_of_text(".x3d", "<X3D><head><unit category='angle'/></head><Scene/></X3D>"),
+              "line 1: conversionFactor is no number above 0");
+}
+
 TEST(X3dContent, WhatIsNotReadIsCounted) {
     const ImportedScene scene =
         read_x3d("<LOD>" + box_shape + "</LOD><Shape><Text string='a'/></Shape><ProtoInstance name='p'/>" + box_shape +

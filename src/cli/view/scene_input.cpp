@@ -11,6 +11,7 @@
 #include "io/files/failure.hpp"
 #include "io/results/result_file.hpp"
 #include "octopair/engine.hpp"
+#include "octopair/error.hpp"
 #include "octopair/pair_list.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/detect/filter_chain.hpp"

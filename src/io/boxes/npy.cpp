@@ -48,23 +48,29 @@ void turn_bytes(std::span<Real> values) {
     }
 }
 
-/// Reads numbers that follow each other in a file, from number `first` of the array on.
+/// A place in the array of a file: from number `first` on.
+struct ArrayPlace {
+    const InputFile& file;
+    const NpyHeader& header;
+    std::uint64_t first;
+};
+
+/// Reads numbers that follow each other in a file.
 template <typename Real>
-void read_numbers(const InputFile& file, const NpyHeader& header, std::uint64_t first, std::span<Real> values,
-                  const std::stop_token& stop) {
-    const std::uint64_t begin = header.data_offset + first * sizeof(Real);
-    if (!header.big_endian) return file.read(begin, std::as_writable_bytes(values), stop);
+void read_numbers(const ArrayPlace& from, std::span<Real> values, const std::stop_token& stop) {
+    const std::uint64_t begin = from.header.data_offset + from.first * sizeof(Real);
+    if (!from.header.big_endian) return from.file.read(begin, std::as_writable_bytes(values), stop);
     constexpr std::size_t piece = std::size_t(1) << 20;  // a stop request is seen before each
     for (std::size_t at = 0; at < values.size(); at += piece) {
         const auto some = values.subspan(at, std::min(piece, values.size() - at));
-        file.read(begin + at * sizeof(Real), std::as_writable_bytes(some), stop);
+        from.file.read(begin + at * sizeof(Real), std::as_writable_bytes(some), stop);
         turn_bytes(some);
     }
 }
 
 /// Returns the numbers of boxes or spheres.
 template <typename Real, typename Object>
-std::span<Real> numbers_of(std::span<Object> objects) {
+std::span<Real> as_numbers(std::span<Object> objects) {
     static_assert(sizeof(Object) % sizeof(Real) == 0);
     return {reinterpret_cast<Real*>(objects.data()), objects.size() * (sizeof(Object) / sizeof(Real))};
 }
@@ -108,7 +114,7 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
     if (shape_.spheres) {
         Buffer<Sphere<Real>> spheres{objects};
         if (header_.fortran_order) {
-            read_columns(rows, numbers_of<Real>(spheres.span()), stop);
+            read_columns(rows, as_numbers<Real>(spheres.span()), stop);
         } else {
             read_rows(rows.begin, spheres.span(), stop);
         }
@@ -116,7 +122,7 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
         return boxes;
     }
     if (header_.fortran_order) {
-        read_columns(rows, numbers_of<Real>(boxes.span()), stop);
+        read_columns(rows, as_numbers<Real>(boxes.span()), stop);
         return boxes;
     }
     // If all objects are read, the layout in memory is that of the file, so one read is enough.
@@ -154,7 +160,7 @@ void NpyScene::read_columns(const ObjectRows& rows, std::span<Real> values, cons
         const std::uint64_t first = (column * shape_.objects + rows.begin) * frames;
         for (std::uint64_t begin = 0; begin < numbers; begin += piece) {
             const auto part = some.span().first(std::size_t(std::min<std::uint64_t>(piece, numbers - begin)));
-            read_numbers(file_, header_, first + begin, part, stop);
+            read_numbers({file_, header_, first + begin}, part, stop);
             for (std::size_t i = 0; i < part.size(); ++i) {
                 const std::uint64_t object = (begin + i) / frames, frame = (begin + i) % frames;
                 values[(frame * objects + object) * columns + column] = part[i];
@@ -167,7 +173,7 @@ void NpyScene::read_columns(const ObjectRows& rows, std::span<Real> values, cons
 template <typename T>
 void NpyScene::read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
     using Real = std::conditional_t<std::is_same_v<T, Box3d> || std::is_same_v<T, Sphere<double>>, double, float>;
-    read_numbers(file_, header_, first * (sizeof(T) / sizeof(Real)), numbers_of<Real>(rows), stop);
+    read_numbers({file_, header_, first * (sizeof(T) / sizeof(Real))}, as_numbers<Real>(rows), stop);
 }
 
 LoadedScene read_npy_scene(const std::string& path, const std::stop_token& stop) {
@@ -187,7 +193,7 @@ std::optional<NpyFrames> NpyFrames::open(const std::string& path) {
 
 template <typename Real>
 void NpyFrames::read_rows(std::uint64_t first, std::span<Box<Real>> rows, const std::stop_token& stop) const {
-    if (!header_.fortran_order) return read_numbers(file_, header_, first * 6, numbers_of<Real>(rows), stop);
+    if (!header_.fortran_order) return read_numbers({file_, header_, first * 6}, as_numbers<Real>(rows), stop);
     file_.check_unchanged();
     const auto all = std::get<Buffer<Box<Real>>>(whole_.boxes).span();
     std::copy_n(all.begin() + std::ptrdiff_t(first), rows.size(), rows.begin());
@@ -218,13 +224,13 @@ Buffer<double> read_padding(const std::string& path, const std::stop_token& stop
     if (shape.size() != 1) refuse(path, fmt::format("its shape is {}; paddings are (n,)", shape_text(shape)));
     Buffer<double> padding{std::size_t(shape[0])};
     if (header.type == NpyType::float64) {
-        read_numbers(file, header, 0, padding.span(), stop);
+        read_numbers({file, header, 0}, padding.span(), stop);
     } else {
         constexpr std::size_t piece = std::size_t(1) << 20;  // a stop request is seen before each
         Buffer<float> narrow{std::min(piece, padding.size())};
         for (std::size_t at = 0; at < padding.size(); at += piece) {
             const auto some = narrow.span().first(std::min(piece, padding.size() - at));
-            read_numbers(file, header, at, some, stop);
+            read_numbers({file, header, at}, some, stop);
             std::copy_n(some.data(), some.size(), padding.data() + at);
         }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <numeric>
 
@@ -144,10 +145,16 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
 const aiScene& MeshFile::import(const std::string& path) {
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
     // Assimp chooses its reader by the ending. A file with another ending, or none, is read from memory, with the right one.
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // they are in no file
     const bool by_name = !known_.by_content && content_.ending.empty();
     const aiScene* const scene = by_name ? import_by_name(path) : import_by_content(readable);
     readable.check_unchanged();
-    if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
+    if (scene != nullptr && scene->mRootNode != nullptr) {
+        // Some importers name the root by the path, and an object's name must not depend on the folder.
+        aiNode& root = *scene->mRootNode;
+        if (root.mName.C_Str() == path) root.mName.Set(std::filesystem::path(path).filename().string());
+        return *scene;
+    }
     rethrow_bad_alloc(importer_);
     std::string words = importer_.GetErrorString();
     std::replace_if(

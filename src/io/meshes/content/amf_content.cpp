@@ -131,7 +131,7 @@ private:
         if (const auto id = constellation.attribute("id")) out_.attribute("id", *id);
         for (const XmlElement& instance : constellation.children("instance")) {
             out_.open("instance");
-            for (const XmlElement& value : instance.children()) refuse_rotation(value);
+            for (const XmlElement& value : instance.children()) check_placement(value);
             const auto id = instance.attribute("objectid");
             if (!id || !ids_.contains(std::string(*id)))
                 instance.refuse(fmt::format("the object '{}' is not in the file", shown(id.value_or(""))));
@@ -147,8 +147,15 @@ private:
         if (name == "deltax" || name == "deltay" || name == "deltaz") write_number(name, only_number(value));
     }
 
-    static void refuse_rotation(const XmlElement& value) {
+    /// Scales and mirrors are not part of AMF, but slicers write them.
+    static void check_placement(const XmlElement& value) {
         const std::string_view name = value.name();
+        const bool scale = name.starts_with("scale"), mirror = name.starts_with("mirror");
+        if ((scale || mirror) && only_number(value) != (scale ? 1 : 0)) {
+            value.refuse(
+                fmt::format("an instance is {} (<{}>), which Assimp does not read; export it as STL, OBJ or 3MF",
+                            scale ? "scaled" : "mirrored", name));
+        }
         if ((name == "rx" || name == "ry" || name == "rz") && only_number(value) != 0) {
             value.refuse(fmt::format(
                 "an instance is rotated (<{}>), which Assimp reads wrongly; export it as STL, OBJ or 3MF", name));

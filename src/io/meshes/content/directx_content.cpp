@@ -13,7 +13,7 @@ namespace octopair::io {
 
 namespace {
 
-constexpr std::size_t header_bytes = 16, max_frames = 1000;
+constexpr std::size_t x_header_bytes = 16, max_nested_frames = 1000;
 
 /// What a frame has.
 struct Frame {
@@ -24,7 +24,7 @@ struct Frame {
 class DirectxCheck {
 public:
     DirectxCheck(const std::string& path, std::string_view text) : text_(text), tokens_(path, text, "{};,", '#') {
-        while (tokens_.peek().offset < header_bytes && !tokens_.peek().text.empty()) tokens_.next();
+        while (tokens_.peek().offset < x_header_bytes && !tokens_.peek().text.empty()) tokens_.next();
     }
 
     MeshContent check() {
@@ -69,7 +69,8 @@ private:
     }
 
     void check_frame(const TextToken& type, Frame& parent) {
-        if (++depth_ > max_frames) tokens_.refuse(type.line, fmt::format("more than {} frames are nested", max_frames));
+        if (++depth_ > max_nested_frames)
+            tokens_.refuse(type.line, fmt::format("more than {} frames are nested", max_nested_frames));
         const bool named = open(type);
         const std::size_t name_place = type.offset + type.text.size();
         Frame frame;
@@ -206,7 +207,7 @@ private:
 }  // namespace
 
 MeshContent correct_directx(const std::string& path, std::string_view bytes) {
-    if (!bytes.starts_with("xof ") || bytes.size() < header_bytes || bytes.substr(8, 3) != "txt") return {};
+    if (!bytes.starts_with("xof ") || bytes.size() < x_header_bytes || bytes.substr(8, 3) != "txt") return {};
     return DirectxCheck(path, bytes).check();
 }
 

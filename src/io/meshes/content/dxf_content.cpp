@@ -112,10 +112,13 @@ private:
             add_line(entity, {entity.point(10, {}, path_), entity.point(11, {}, path_)}, {}, transform);
         } else if (entity.type == "POLYLINE") {
             add_polyline(entity, vertices, transform);
-        } else if (has_surfaces(entity.type) || (entity.type == "LWPOLYLINE" && entity.number(39, 0, path_) != 0)) {
+        } else if (has_surfaces(entity.type) || (is_curve(entity.type) && entity.number(39, 0, path_) != 0)) {
             left_out_.add(fmt::format("entities of type {}", entity.type));
         }
     }
+
+    /// A curve with a thickness is a surface.
+    static bool is_curve(std::string_view type) { return type == "LWPOLYLINE" || type == "CIRCLE" || type == "ARC"; }
 
     void add_face(const DxfEntity& entity, const DxfTransform& transform) {
         DxfPoints corners;

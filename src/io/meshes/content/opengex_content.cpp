@@ -46,8 +46,9 @@ private:
         return (text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z');
     }
 
-    bool is_inside(std::string_view type) const {
-        return std::any_of(open_.begin(), open_.end(), [&](const OpenStructure& open) { return open.type == type; });
+    bool is_within_node() const {
+        return std::any_of(open_.begin(), open_.end(),
+                           [](const OpenStructure& open) { return open.type.ends_with("Node"); });
     }
 
     /// Reads the head of a structure, or of a list of numbers.
@@ -75,8 +76,7 @@ private:
         if (open_.empty()) return;
         OpenStructure& owner = open_.back();
         const bool in_node = owner.type.ends_with("Node");
-        if (type.text == "GeometryNode" && (is_inside("Node") || is_inside("BoneNode")))
-            left_out_.add("geometry in structures of type Node or BoneNode");
+        if (type.text == "GeometryNode" && is_within_node()) left_out_.add("geometry within other nodes");
         if (in_node && (type.text == "Translation" || type.text == "Rotation" || type.text == "Scale"))
             tokens_.refuse(type.line,
                            fmt::format("{} is not read; export the node with a Transform of 16 numbers", type.text));

@@ -60,6 +60,7 @@ public:
         files_ = files;
         for (std::size_t i = 0; i < tree_.size(); ++i) {
             if (tree_.at(i).name() != "X3D") continue;
+            for (const XmlElement& head : tree_.at(i).children("head")) check_units(head);
             for (const XmlElement& scene : tree_.at(i).children("Scene")) write_children(scene);
             return;
         }
@@ -67,6 +68,18 @@ public:
     }
 
 private:
+    /// Reads the unit of angles, which Assimp takes for radians.
+    void check_units(const XmlElement& head) {
+        for (const XmlElement& unit : head.children("unit")) {
+            const std::vector<double> factor = x3d_numbers(unit, "conversionFactor");
+            if (factor.size() != 1 || !(factor[0] > 0)) unit.refuse("conversionFactor is no number above 0");
+            const std::string_view category = unit.attribute("category").value_or("");
+            if (category == "angle") radians_ = factor[0];
+            if (category == "length" && factor[0] != 1)
+                left_out_.add("the unit of lengths, which are read as they are");
+        }
+    }
+
     /// Returns the last element before `node` that has the name which `node` uses.
     XmlElement used_by(const XmlElement& node) const {
         const auto name = node.attribute("USE");
@@ -142,13 +155,14 @@ private:
     }
 
     /// Returns an axis of length 1, and an angle.
-    static std::vector<double> rotation_of(const XmlElement& node, std::string_view name) {
+    std::vector<double> rotation_of(const XmlElement& node, std::string_view name) const {
         std::vector<double> rotation = x3d_numbers(node, name);
         if (rotation.size() != 4) node.refuse(fmt::format("{} has {} numbers in place of 4", name, rotation.size()));
         const double length = std::hypot(rotation[0], rotation[1], rotation[2]);
         if (rotation[3] == 0) return {0, 0, 1, 0};
         if (!(length > 0) || !std::isfinite(length)) node.refuse(fmt::format("{} has no axis", name));
         for (std::size_t axis = 0; axis < 3; ++axis) rotation[axis] /= length;
+        rotation[3] *= radians_;
         return rotation;
     }
 
@@ -212,6 +226,7 @@ private:
     const XmlTree& tree_;
     XmlWriter& out_;
     LeftOut& left_out_;
+    double radians_ = 1;  // of the file's unit of angles
     std::map<std::string, std::vector<std::size_t>> definitions_;
     std::vector<std::size_t> open_;  // nodes that are being written
     std::size_t files_ = 0;          // how deep Inline nodes may be nested in this file

@@ -51,7 +51,9 @@ public:
             BuildNode node = std::move(waiting.back());
             waiting.pop_back();
             const ModelObject& object = model_.object(node.reference->target);
-            if (object.has_mesh) {
+            if (node.parent != 0 && object.type == ObjectType::other) {
+                ++others_;  // slicers store modifiers and blockers of supports so; they are not printed
+            } else if (object.has_mesh) {
                 add_object(std::move(node), object);
             } else {
                 check_components(node, object);
@@ -157,9 +159,11 @@ private:
                 fmt::format("{}: {} {} {}", model_.path(), count, count == 1 ? "object" : "objects", what));
         };
         add(supports_, "of the types support or solidsupport: read like the others");
+        add(others_, "of the type other within other objects: left out, because they are not printed");
         add(coarse_, "with a mesh that stands for a finer shape, which is not read");
         add(extended_,
             fmt::format("with an extension that may change the shape and is not read, such as {}", first_extension_));
+        if (others_ > 0) build_.not_read.push_back(fmt::format("parts of the type other ({})", others_));
         if (coarse_ > 0) build_.not_read.push_back(fmt::format("finer shapes ({})", coarse_));
         if (extended_ > 0) build_.not_read.push_back(fmt::format("extensions of objects ({})", extended_));
     }
@@ -167,7 +171,7 @@ private:
     Model& model_;
     Build build_;
     std::map<ObjectPlace, std::size_t> meshes_;  // object -> index in PlacedMeshes::meshes
-    std::uint64_t supports_ = 0, coarse_ = 0, extended_ = 0;
+    std::uint64_t supports_ = 0, others_ = 0, coarse_ = 0, extended_ = 0;
     std::string first_extension_;
 };
 
