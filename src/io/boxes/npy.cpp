@@ -153,17 +153,17 @@ std::optional<Buffer<Box<Real>>> NpyScene::map_boxes(const ObjectRows& rows, std
 template <typename Real>
 void NpyScene::read_columns(const ObjectRows& rows, std::span<Real> values, const std::stop_token& stop) const {
     constexpr std::size_t piece = std::size_t(1) << 18;
-    const std::uint64_t objects = rows.end - rows.begin, frames = shape_.frames, columns = header_.shape.back();
+    const std::uint64_t objects = rows.end - rows.begin, frames = shape_.frames, width = header_.shape.back();
     const std::uint64_t numbers = objects * frames;
     Buffer<Real> some{std::size_t(std::min<std::uint64_t>(piece, numbers))};
-    for (std::uint64_t column = 0; column < columns; ++column) {
+    for (std::uint64_t column = 0; column < width; ++column) {
         const std::uint64_t first = (column * shape_.objects + rows.begin) * frames;
         for (std::uint64_t begin = 0; begin < numbers; begin += piece) {
             const auto part = some.span().first(std::size_t(std::min<std::uint64_t>(piece, numbers - begin)));
             read_numbers({file_, header_, first + begin}, part, stop);
             for (std::size_t i = 0; i < part.size(); ++i) {
                 const std::uint64_t object = (begin + i) / frames, frame = (begin + i) % frames;
-                values[(frame * objects + object) * columns + column] = part[i];
+                values[(frame * objects + object) * width + column] = part[i];
             }
         }
     }
