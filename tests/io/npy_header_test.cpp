@@ -77,7 +77,7 @@ TEST(NpyHeader, SaysWhatItFound) {
     const auto dict = [](const std::string& type, const std::string& order, const std::string& shape) {
         return "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
     };
-    EXPECT_EQ(header_refusal(""), "f.npy: not an npy file: it is empty");
+    EXPECT_EQ(header_refusal(""), "f.npy: is empty");
     EXPECT_EQ(header_refusal("PK\x03\x04 something"),
               "f.npy: not an npy file: it begins with 'PK\\x03\\x04 s'; save the array with numpy.save");
     EXPECT_EQ(header_refusal(file_of(boxes_dict, 72, 4)),

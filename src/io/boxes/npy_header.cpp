@@ -163,7 +163,7 @@ private:
 
 /// Returns the header, a Python dictionary as text, and the offset of the data in the file. Throws: Error{bad_input}.
 std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std::string_view file) {
-    if (bytes.empty()) refuse(file, "not an npy file: it is empty");
+    if (bytes.empty()) refuse(file, "is empty");
     const std::string_view start = bytes.substr(0, magic.size());
     if (start != magic.substr(0, start.size())) {
         refuse(file, fmt::format("not an npy file: it begins with {}; save the array with numpy.save", quoted(start)));
