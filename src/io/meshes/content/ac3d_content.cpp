@@ -15,7 +15,7 @@ namespace octopair::io {
 
 namespace {
 
-/// What an object has, as far as it was read.
+/// An object, as far as it was read.
 struct Ac3dObject {
     std::size_t line = 0;
     std::size_t vertices = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t x_header_bytes = 16, max_nested_frames = 1000;
 
-/// What a frame has.
+/// A frame, as far as it was read.
 struct Frame {
     bool meshes = false;
     std::size_t frames = 0;

@@ -1,4 +1,4 @@
-// What the text of a mesh file says, before Assimp reads it.
+// MeshContent: the result of a check of a mesh file's text, before Assimp reads the file.
 // Start here to change what is done about faults of Assimp.
 //
 // A check of a format finds what Assimp reads wrongly. It writes the content in a form that Assimp reads rightly, refuses the file, or counts
@@ -15,11 +15,11 @@
 namespace octopair::io {
 
 struct MeshContent {
-    /// What Assimp shall read in place of the file; nothing: the file itself.
+    /// Text that Assimp reads in place of the file; none: Assimp reads the file itself.
     std::optional<std::string> text;
     /// Ending of the format of `text`; empty: that of the file.
     std::string ending;
-    /// What is left out, for example "entities of type 3DSOLID (2)".
+    /// Content that Assimp leaves out, for example "entities of type 3DSOLID (2)".
     std::vector<std::string> left_out;
 };
 

@@ -56,7 +56,7 @@ OffKeyword keyword_of(std::string_view word) {
     return {};
 }
 
-/// What the file does not say about its layout.
+/// Properties of the layout that the file does not state.
 struct OffLayout {
     bool by_lines = true;        ///< each vertex and each face has a line of its own
     bool edges = true;           ///< the number of edges follows that of faces, if not on the same line
@@ -248,7 +248,7 @@ OffContent read_content(const FileContent& file) {
     OffContent stream = read_stream(file, by_lines);
     if (stream.is_complete()) return stream;
     if (!by_lines.error || !stream.error) return by_lines;
-    // What is wrong is what the layout says that the first vertices have.
+    // Beyond the first vertices the layout is known, and the error is one of the file. Before, the layout that got further is the better guess.
     if (by_lines.mesh.vertices.size() > 1) return by_lines.is_uniform ? std::move(by_lines) : std::move(stream);
     return stream.last_line <= by_lines.last_line ? std::move(by_lines) : std::move(stream);
 }

@@ -13,7 +13,7 @@ namespace octopair::io::three_mf {
 
 namespace {
 
-/// What the namespaces of 3MF begin with, before the version: the present one, and that of drafts before version 1.0.
+/// Beginnings of the namespaces of 3MF, up to the version: the present one, and that of drafts before version 1.0.
 constexpr std::array<std::string_view, 2> core_spaces = {"http://schemas.microsoft.com/3dmanufacturing/core/",
                                                          "http://schemas.microsoft.com/3dmanufacturing/"};
 constexpr std::array<std::string_view, 2> core_versions = {"2015/02", "2013/01"};
