@@ -1,7 +1,7 @@
 // AtAllocation: runs an action at one memory allocation of a call, for example to let it fail.
 //
 // Counts the allocations of all threads, or of one: operator new, and the calls of mmap and aligned_alloc by which buffers get memory. Only
-// allocations of octopair and of the standard library count, not those of other libraries, such as TBB.
+// allocations of octopair and of the standard library count, not those of other libraries, such as TBB. The action does not run inside gRPC.
 //
 // A test program gets it with target_link_libraries(... octopair_at_allocation). With the thread sanitizer only mmap and aligned_alloc
 // count, so tests of each allocation are left out there.
