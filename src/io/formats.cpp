@@ -17,8 +17,8 @@
 #include "io/files/stream_input.hpp"
 #include "io/formats/content_marks.hpp"
 #include "io/formats/format_table.hpp"
+#include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
-#include "io/meshes/mesh_reader.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {

@@ -10,8 +10,8 @@
 #include "io/files/failure.hpp"
 #include "io/formats.hpp"
 #include "io/json/json_scene.hpp"
+#include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
-#include "io/meshes/mesh_reader.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "io/meshes/ifc_elements.hpp"
+#include "io/meshes/assimp/ifc_text.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/formats/format_table.hpp"
-#include "io/meshes/mesh_reader.hpp"
+#include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

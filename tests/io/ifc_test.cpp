@@ -1,9 +1,8 @@
 // Tests IFC models: names, details, axes and unit. The model is a wall and a beam that share 100 mm.
 #include <gtest/gtest.h>
 
-#include "io/meshes/ifc_elements.hpp"
-#include "io/meshes/ifc_schema.hpp"
-#include "io/meshes/mesh_reader.hpp"
+#include "io/meshes/assimp/ifc_text.hpp"
+#include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/temporary.hpp"
 
 namespace octopair::test {

@@ -1,5 +1,5 @@
 // Tests the reader of mesh scenes: names, poses, boxes and triangles.
-#include "io/meshes/mesh_reader.hpp"
+#include "io/meshes/assimp/mesh_reader.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <optional>
 #include <set>
 
-#include "io/meshes/mesh_file.hpp"
-#include "io/meshes/mesh_shapes.hpp"
+#include "io/meshes/assimp/mesh_file.hpp"
+#include "io/meshes/assimp/scene_parts.hpp"
 #include "io/scene_reader.hpp"
 #include "io/temporary.hpp"
 

@@ -23,7 +23,7 @@
 #include "cli/input/scene_transfer.hpp"
 #include "io/files/failure.hpp"
 #include "io/formats.hpp"
-#include "io/meshes/ifc_schema.hpp"
+#include "io/meshes/assimp/ifc_text.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

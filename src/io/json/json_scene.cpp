@@ -14,10 +14,9 @@
 #include "io/formats.hpp"
 #include "io/json/json_fields.hpp"
 #ifdef OCTOPAIR_WITH_MESHES
+#include "io/meshes/assimp/mesh_file.hpp"
+#include "io/meshes/assimp/scene_parts.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
-#include "io/meshes/import_warnings.hpp"
-#include "io/meshes/mesh_file.hpp"
-#include "io/meshes/mesh_shapes.hpp"
 #include "io/meshes/plain/plain_scene.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 #endif

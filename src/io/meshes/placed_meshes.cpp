@@ -159,6 +159,20 @@ LoadedScene exact_triangle_scene(const WorldView& world) {
 
 }  // namespace
 
+void remove_unused_vertices(std::vector<Point3d>& vertices, std::span<std::uint32_t> corners) {
+    constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> numbers(vertices.size(), unused);
+    for (const std::uint32_t corner : corners) numbers[corner] = 0;
+    std::uint32_t used = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (numbers[i] == unused) continue;
+        vertices[used] = vertices[i];
+        numbers[i] = used++;
+    }
+    vertices.resize(used);
+    for (std::uint32_t& corner : corners) corner = numbers[corner];
+}
+
 LoadedScene scene_of(PlacedMeshes& placed, const SceneContent& content, ReadBudget& budget) {
     if (content.objects == MeshObjects::node) return object_scene(placed, content.shapes, budget);
     const WorldView world{placed, budget};

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@
 #include "octopair/shapes.hpp"
 
 namespace octopair::io {
+
+/// Removes the vertices that are no corner of a face. The others keep their order. `corners`: indices of vertices, which are renumbered.
+void remove_unused_vertices(std::vector<Point3d>& vertices, std::span<std::uint32_t> corners);
 
 /// A mesh that several objects may have.
 struct SharedMesh {

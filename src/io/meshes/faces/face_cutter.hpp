@@ -1,4 +1,4 @@
-// FaceCutter: cuts faces with any number of corners into triangles.
+// FaceCutter: cuts faces with any number of corners into triangles. CrossingFaces: counts those that it cannot cut rightly.
 // Start here to change how faces are cut into triangles.
 //
 // - Everything is decided exactly, in the plane of two coordinate axes across which the area vector of the outline is largest.
@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/meshes/faces/plane_outline.hpp"
@@ -37,6 +39,19 @@ private:
 
     StopCheck check_;
     std::vector<Triangle> triangles_;
+};
+
+/// Counts the faces of a file that cross themselves, for a warning.
+class CrossingFaces {
+public:
+    /// Counts face `face` of an object.
+    void add(std::uint64_t face, std::string_view object);
+    /// Appends a warning about the faces of the file, if there are any.
+    void append_warning(std::string_view path, std::vector<std::string>& warnings) const;
+
+private:
+    std::uint64_t count_ = 0, first_ = 0;
+    std::string object_;
 };
 
 }  // namespace octopair::io

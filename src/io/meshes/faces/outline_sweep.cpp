@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "io/meshes/faces/monotone_pieces.hpp"
-#include "io/meshes/faces/outline_nodes.hpp"
+#include "io/meshes/faces/plane_outline.hpp"
 
 namespace octopair::io {
 

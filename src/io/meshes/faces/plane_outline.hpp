@@ -1,10 +1,11 @@
 // PlaneOutline: the outline of a face in one of the planes of the coordinate axes. One coordinate is left out, so the other two stay
-// exact, and so are all decisions in the plane.
+// exact, and so are all decisions in the plane. OutlineNodes: the corners of an outline in the order of a sweep.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "geometry/line_side.hpp"
 
@@ -71,6 +72,48 @@ private:
     StopCheck& check_;
     unsigned axis_ = 0, u_ = 0, v_ = 0;
     bool counterclockwise_ = true;
+};
+
+/// An edge between two nodes.
+struct OutlineEdge {
+    std::uint32_t low, high;   ///< low < high
+    int weight;                ///< 1: the outline goes from low to high; -1: from high to low
+    std::uint32_t bundle = 0;  ///< set by the sweep
+};
+
+/// The corners of an outline in the order of a sweep. Corners at one place of the plane are one node.
+/// Nodes are numbered from left to right; those straight above each other, from below.
+class OutlineNodes {
+public:
+    explicit OutlineNodes(const PlaneOutline& outline);
+
+    std::uint32_t size() const { return std::uint32_t(corners_.size()); }
+    /// Returns the first corner at a node.
+    std::uint32_t corner_of(std::uint32_t node) const { return corners_[node]; }
+    std::uint32_t node_of(std::uint32_t corner) const { return nodes_[corner]; }
+    /// Returns the places of the nodes' corners.
+    const std::vector<Point3d>& places() const { return places_; }
+
+    /// Returns the edges of the outline that are not between two corners of one node.
+    std::span<OutlineEdge> edges() { return edges_; }
+    /// Return the numbers of the edges with this low or high node.
+    std::span<const std::uint32_t> starting_at(std::uint32_t node) const { return starting_.of(node); }
+    std::span<const std::uint32_t> ending_at(std::uint32_t node) const { return ending_.of(node); }
+
+private:
+    /// Numbers of edges, by a node of theirs.
+    struct EdgesByNode {
+        std::vector<std::uint32_t> begins, numbers;
+        std::span<const std::uint32_t> of(std::uint32_t node) const {
+            return std::span(numbers).subspan(begins[node], begins[node + 1] - begins[node]);
+        }
+    };
+    EdgesByNode by_node(std::uint32_t OutlineEdge::*end) const;
+
+    std::vector<std::uint32_t> corners_, nodes_;
+    std::vector<Point3d> places_;
+    std::vector<OutlineEdge> edges_;
+    EdgesByNode starting_, ending_;
 };
 
 }  // namespace octopair::io

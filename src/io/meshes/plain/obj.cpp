@@ -8,6 +8,7 @@
 // - Keywords are small letters. If no line begins with `v`, they may be capitals.
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <map>
 #include <string>
 #include <unordered_map>
@@ -16,12 +17,51 @@
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
-#include "io/meshes/plain/obj_keywords.hpp"
 #include "io/meshes/plain/text_lines.hpp"
 
 namespace octopair::io {
 
 namespace {
+
+/// Meaning of a line of an OBJ file.
+enum class ObjKeyword : std::uint8_t {
+    vertex,
+    face,
+    line,    ///< a polyline
+    points,  ///< any number of points
+    material,
+    object,
+    group,
+    ignored,   ///< says nothing about geometry
+    freeform,  ///< curves and surfaces, which are not read
+    call,      ///< another file, which is not read
+    unknown,
+};
+
+/// Returns the meaning of the first word of a line, after Wavefront's specification with the superseded keywords. Requires: letters are
+/// small.
+ObjKeyword obj_keyword(std::string_view word) {
+    using enum ObjKeyword;
+    static constexpr std::pair<std::string_view, ObjKeyword> others[] = {
+        {"g", group}, {"o", object}, {"usemtl", material}, {"l", line}, {"p", points}, {"fo", face}, {"call", call}};
+    static constexpr std::string_view ignored_words[] = {
+        "vn",    "vt",       "s",        "mtllib", "vp",    "mg",         "usemap", "maplib",   "lod",
+        "bevel", "c_interp", "d_interp", "ctech",  "stech", "shadow_obj", "csh",    "trace_obj"};
+    static constexpr std::string_view freeform_words[] = {"cstype", "deg",  "bmat", "step", "curv", "curv2", "surf",
+                                                          "parm",   "trim", "hole", "scrv", "sp",   "end",   "con",
+                                                          "bsp",    "bzp",  "cdc",  "cdp",  "res"};
+    const auto is_in = [&](const auto& words) {
+        return std::find(std::begin(words), std::end(words), word) != std::end(words);
+    };
+    // The frequent ones come first.
+    if (word == "v") return vertex;
+    if (word == "f") return face;
+    if (is_in(ignored_words)) return ignored;
+    const auto* const other =
+        std::find_if(std::begin(others), std::end(others), [&](const auto& entry) { return entry.first == word; });
+    if (other != std::end(others)) return other->second;
+    return is_in(freeform_words) ? freeform : unknown;
+}
 
 /// Returns whether a line begins with `v`. In most files it is one of the first lines.
 bool has_small_vertex(std::string_view text) {

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/meshes/faces/crossing_faces.hpp"
+#include "io/meshes/faces/face_cutter.hpp"
 #include "octopair/shapes.hpp"
 
 namespace octopair::io {

@@ -13,6 +13,7 @@
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats.hpp"
+#include "io/meshes/placed_meshes.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
 
 namespace octopair::io {
@@ -50,22 +51,6 @@ std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_toke
         parse({{bytes.data(), bytes.size()}, path, stop, progress, &scene.warnings}, format_ending(path));
     scene.largest_rounded = std::max(scene.largest_rounded, largest_rounded(meshes));
     return meshes;
-}
-
-/// Keeps the vertices that faces use, in the order of the file; all of them if there are no faces.
-void keep_used_vertices(PlainMesh& mesh) {
-    if (mesh.corners.empty()) return;
-    constexpr std::uint32_t unused = ~std::uint32_t(0);
-    std::vector<std::uint32_t> numbers(mesh.vertices.size(), unused);
-    for (const std::uint32_t corner : mesh.corners) numbers[corner] = 0;
-    std::uint32_t used = 0;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (numbers[i] == unused) continue;
-        mesh.vertices[used] = mesh.vertices[i];
-        numbers[i] = used++;
-    }
-    mesh.vertices.resize(used);
-    for (std::uint32_t& corner : mesh.corners) corner = numbers[corner];
 }
 
 /// Loops over meshes call this for each. Throws: Error{cancelled} now and then after a stop request.
@@ -126,7 +111,8 @@ void add_objects(std::vector<PlainMesh>& meshes, const std::string& path, Loaded
                  const std::stop_token& stop) {
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         check_stop(i, stop);
-        keep_used_vertices(meshes[i]);
+        // All vertices count for the box of a mesh without faces.
+        if (!meshes[i].corners.empty()) remove_unused_vertices(meshes[i].vertices, meshes[i].corners);
     }
     std::erase_if(meshes, [](const PlainMesh& mesh) { return mesh.vertices.empty(); });
     scene.objects = meshes.size();
@@ -201,15 +187,6 @@ Buffer<Box3f> boxes_of_triangles(const LoadedTriangles& loaded, const std::strin
 }
 
 }  // namespace
-
-void FileContent::checkpoint(std::size_t offset) const {
-    if (stop.stop_requested()) cancel();
-    if (progress) progress(double(offset) / double(bytes.size()));
-}
-
-void FileContent::warn(std::string_view what) const {
-    if (warnings != nullptr) warnings->push_back(fmt::format("{}: {}", path, what));
-}
 
 bool is_plain_ending(std::string_view ending) {
     return ending == ".obj" || ending == ".off" || ending == ".stl" || ending == ".ply";

@@ -1,37 +1,13 @@
 #include "io/meshes/three_mf/mesh_builder.hpp"
 
 #include <array>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
-#include "io/meshes/three_mf/attribute_values.hpp"
+#include "io/meshes/three_mf/attributes.hpp"
 
 namespace octopair::io::three_mf {
-
-namespace {
-
-/// Removes the vertices that no triangle uses. The others stay in their order.
-void remove_unused_vertices(shape::Mesh& mesh) {
-    constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> numbers(mesh.vertices.size(), unused);
-    for (const auto& corners : mesh.triangles) {
-        for (const std::uint32_t corner : corners) numbers[corner] = 0;
-    }
-    std::uint32_t used = 0;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (numbers[i] == unused) continue;
-        mesh.vertices[used] = mesh.vertices[i];
-        numbers[i] = used++;
-    }
-    mesh.vertices.resize(used);
-    for (auto& corners : mesh.triangles) {
-        for (std::uint32_t& corner : corners) corner = numbers[corner];
-    }
-}
-
-}  // namespace
 
 void MeshBuilder::begin(std::optional<Property> own) {
     mesh_ = {};
@@ -41,7 +17,7 @@ void MeshBuilder::begin(std::optional<Property> own) {
     uses_own_ = false;
 }
 
-void MeshBuilder::add_vertex(const XmlElement& element, const XmlParser& parser) {
+void MeshBuilder::add_vertex(const XmlTag& element, const XmlParser& parser) {
     constexpr std::array<std::string_view, 3> axes = {"x", "y", "z"};
     budget_.charge(1, sizeof(Point3d) + sizeof(std::uint32_t));
     Point3d place;
@@ -58,7 +34,7 @@ void MeshBuilder::add_vertex(const XmlElement& element, const XmlParser& parser)
     mesh_.vertices.push_back(place);
 }
 
-bool MeshBuilder::add_triangle(const XmlElement& element, const XmlParser& parser) {
+bool MeshBuilder::add_triangle(const XmlTag& element, const XmlParser& parser) {
     constexpr std::array<std::string_view, 3> names = {"v1", "v2", "v3"};
     const std::size_t count = mesh_.triangles.size();
     budget_.charge(1, sizeof mesh_.triangles[0]);
@@ -84,7 +60,7 @@ bool MeshBuilder::add_triangle(const XmlElement& element, const XmlParser& parse
 }
 
 /// Notes the material of a triangle. Wrong numbers are left out, because materials say nothing about shapes.
-void MeshBuilder::add_property(const XmlElement& element) {
+void MeshBuilder::add_property(const XmlTag& element) {
     const char* const index = element.find("p1");
     if (index == nullptr) {
         uses_own_ = true;
@@ -108,7 +84,7 @@ SharedMesh MeshBuilder::take() {
     if (mesh_.triangles.empty()) {
         taken.loose = std::move(mesh_.vertices);
     } else {
-        remove_unused_vertices(mesh_);
+        remove_unused_vertices(mesh_.vertices, {mesh_.triangles.front().data(), 3 * mesh_.triangles.size()});
         taken.triangles = std::move(mesh_);
     }
     mesh_ = {};

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "io/meshes/placed_meshes.hpp"
-#include "io/meshes/three_mf/xml_parser.hpp"
+#include "io/meshes/xml/xml_parser.hpp"
 
 namespace octopair::io::three_mf {
 
@@ -27,16 +27,16 @@ public:
     /// Begins the mesh of another object. `own`: the property of the object.
     void begin(std::optional<Property> own);
     /// Adds the vertex of an element. Throws: Error{bad_input} at the line of `parser`; Error{resource_limit}.
-    void add_vertex(const XmlElement& element, const XmlParser& parser);
+    void add_vertex(const XmlTag& element, const XmlParser& parser);
     /// Adds the triangle of an element. Returns whether it has three different vertices. Throws: as add_vertex().
-    bool add_triangle(const XmlElement& element, const XmlParser& parser);
+    bool add_triangle(const XmlTag& element, const XmlParser& parser);
     /// Returns the mesh. Vertices that no triangle uses are left out, but if there are no triangles, all are loose.
     SharedMesh take();
     /// Returns the properties of the mesh, of the last take().
     const std::set<Property>& properties() const { return properties_; }
 
 private:
-    void add_property(const XmlElement& element);
+    void add_property(const XmlTag& element);
 
     ReadBudget& budget_;
     shape::Mesh mesh_;

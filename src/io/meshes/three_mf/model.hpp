@@ -1,22 +1,93 @@
-// Model: the start part of a 3MF file and the parts that it refers to, with all references resolved.
+// Model: the start part of a 3MF file and the parts that it refers to, with all references resolved. ModelPart: what a part says: its
+// objects, and the items to build.
 //
+// - Numbers are the nearest float64. Vertices that no triangle uses are left out.
+// - Indices of vertices are right. An object refers only to objects of the same part before it, or to those of other parts.
 // - All parts have the same unit.
 // - No object contains itself: objects refer to objects before them, and only the start part refers to other parts.
+//
+// Source: 3MF Consortium, core specification 1.3, chapters 3 to 5; production extension 1.1.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "io/meshes/three_mf/model_part.hpp"
+#include "io/meshes/placed_meshes.hpp"
 #include "io/meshes/three_mf/package.hpp"
+#include "octopair/pose.hpp"
 
 namespace octopair::io::three_mf {
+
+/// Place of an object: the index of its part in Model::parts(), and its index in ModelPart::objects.
+struct ObjectPlace {
+    std::size_t part = 0, number = 0;
+
+    auto operator<=>(const ObjectPlace&) const = default;
+};
+
+/// A reference to an object, with a pose: a component of an object, or an item of the build.
+struct Reference {
+    std::uint32_t object = 0;  ///< its identifier
+    std::string part;          ///< name of the part of the object; empty: the same part
+    Pose pose;
+    std::string part_number;  ///< of an item
+    std::uint64_t line = 0;
+    ObjectPlace target;  ///< set by Model
+};
+
+enum class ObjectType : std::uint8_t { model, support, solidsupport, surface, other };
+
+struct ModelObject {
+    std::uint32_t id = 0;
+    std::string name, part_number;
+    ObjectType type = ObjectType::model;
+    bool is_coarse = false;  ///< the mesh stands for a finer shape, which is elsewhere
+    bool has_mesh = false, has_components = false;
+    std::string extension;  ///< first element of an extension that may change the shape; empty if there is none
+    SharedMesh mesh;        ///< if has_mesh
+    std::vector<Reference> components;
+    std::uint64_t line = 0;
+};
+
+/// Number of cases of the same kind, and the place of the first one.
+struct CountedNote {
+    std::uint64_t count = 0;
+    std::string first;
+};
+
+struct ModelPart {
+    std::string name;     ///< of the part, for example "3D/3dmodel.model"
+    std::string version;  ///< of the namespace, for example "2015/02"; empty if the part has none
+    std::string unit;     ///< as in the file, for example "millimeter"
+    bool needs_slices = false;
+    std::vector<ModelObject> objects;
+    std::unordered_map<std::uint32_t, std::size_t> numbers;  ///< identifier of an object -> index in `objects`
+    std::vector<Reference> items;
+    CountedNote flat_triangles;     ///< with the same vertex twice
+    CountedNote unknown_elements;   ///< elements that 3MF does not define
+    CountedNote unknown_materials;  ///< references to materials that do not exist
+};
+
+/// How a part is read.
+struct PartReading {
+    bool is_root = true;  ///< the part has the items to build, and may refer to other parts
+    ReadBudget& budget;
+};
+
+/// Parses a part. `name`: that of the part.
+/// Throws: Error{bad_input} "FILE: NAME: line N: ..."; Error{resource_limit, cancelled}; what the source throws.
+ModelPart parse_model_part(std::string name, const TextSource& source, const PartReading& reading);
+
+/// Returns the version of the namespace of a part. Reads only its first element. Throws: as parse_model_part().
+std::string parse_version(const std::string& name, const TextSource& source, ReadBudget& budget);
 
 class Model {
 public:

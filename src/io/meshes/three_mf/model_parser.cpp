@@ -7,7 +7,7 @@
 
 #include "io/files/failure.hpp"
 #include "io/json/json_fields.hpp"
-#include "io/meshes/three_mf/attribute_values.hpp"
+#include "io/meshes/three_mf/attributes.hpp"
 #include "io/meshes/three_mf/package.hpp"
 
 namespace octopair::io::three_mf {
@@ -26,7 +26,7 @@ struct ModelParser::Rule {
     Place within;
     std::string_view name;
     Place place;
-    void (ModelParser::*begin)(const XmlElement&);
+    void (ModelParser::*begin)(const XmlTag&);
 };
 
 const ModelParser::Rule* ModelParser::rule_for(Place within, std::string_view name) {
@@ -55,7 +55,7 @@ const ModelParser::Rule* ModelParser::rule_for(Place within, std::string_view na
 }
 
 ModelParser::ModelParser(ModelPart& part, const std::string& place, const PartReading& reading)
-    : part_(part), reading_(reading), parser_(place, *this), mesh_(reading.budget) {}
+    : part_(part), reading_(reading), parser_(place, *this, XmlParser::Mode::strict), mesh_(reading.budget) {}
 
 void ModelParser::parse(const TextSource& source) {
     source([this](std::string_view piece) {
@@ -72,13 +72,13 @@ void ModelParser::prefix(std::string_view prefix, std::string_view uri) {
     if (places_.back() == Place::document) prefixes_.insert_or_assign(std::string(prefix), std::string(uri));
 }
 
-void ModelParser::begin(const XmlElement& element) {
+void ModelParser::begin(const XmlTag& element) {
     if (++elements_ % 1024 == 0) reading_.budget.checkpoint();
     const Place within = places_.back();
     places_.push_back(within == Place::skipped ? Place::skipped : enter(within, element));
 }
 
-ModelParser::Place ModelParser::enter(Place within, const XmlElement& element) {
+ModelParser::Place ModelParser::enter(Place within, const XmlTag& element) {
     const XmlName& name = element.name();
     if (within != Place::document && name.space != core_) {
         note_extension(within, element);
@@ -94,7 +94,7 @@ ModelParser::Place ModelParser::enter(Place within, const XmlElement& element) {
     return rule->place;
 }
 
-void ModelParser::note_extension(Place within, const XmlElement& element) {
+void ModelParser::note_extension(Place within, const XmlTag& element) {
     const XmlName& name = element.name();
     if (within == Place::resources) {
         const char* const id = element.find("id");
@@ -113,7 +113,7 @@ void ModelParser::end() {
     if (place == Place::object) finish_object();
 }
 
-void ModelParser::begin_model(const XmlElement& element) {
+void ModelParser::begin_model(const XmlTag& element) {
     core_ = element.name().space;
     if (!is_core_space(core_)) {
         refuse_at(parser_,
@@ -133,11 +133,11 @@ void ModelParser::begin_model(const XmlElement& element) {
     part_.needs_slices = check_required_extensions(required, prefixes_, place).contains(std::string(slice_space));
 }
 
-void ModelParser::begin_resources(const XmlElement&) { refuse_second(has_resources_, "<resources>"); }
+void ModelParser::begin_resources(const XmlTag&) { refuse_second(has_resources_, "<resources>"); }
 
-void ModelParser::begin_build(const XmlElement&) { refuse_second(has_build_, "<build>"); }
+void ModelParser::begin_build(const XmlTag&) { refuse_second(has_build_, "<build>"); }
 
-void ModelParser::begin_item(const XmlElement& element) {
+void ModelParser::begin_item(const XmlTag& element) {
     if (!reading_.is_root) return;
     reading_.budget.charge(1, sizeof(Reference));
     Reference item = reference(element, "item");
@@ -145,18 +145,18 @@ void ModelParser::begin_item(const XmlElement& element) {
     part_.items.push_back(std::move(item));
 }
 
-void ModelParser::begin_materials(const XmlElement& element) {
+void ModelParser::begin_materials(const XmlTag& element) {
     reading_.budget.charge(1, sizeof(std::vector<std::string>) + 8 * sizeof(void*));
     group_ = &materials_[new_identifier(element)];
 }
 
-void ModelParser::begin_base(const XmlElement& element) {
+void ModelParser::begin_base(const XmlTag& element) {
     std::string name = text_or_empty(element.find("name"));
     reading_.budget.charge(1, sizeof(std::string) + name.size());
     group_->push_back(std::move(name));
 }
 
-void ModelParser::begin_object(const XmlElement& element) {
+void ModelParser::begin_object(const XmlTag& element) {
     const std::uint32_t id = new_identifier(element);
     ModelObject next;
     next.id = id;
@@ -187,7 +187,7 @@ void ModelParser::begin_object(const XmlElement& element) {
     properties_.emplace_back();
 }
 
-void ModelParser::begin_mesh(const XmlElement&) {
+void ModelParser::begin_mesh(const XmlTag&) {
     if (object().has_components)
         refuse_at(parser_, fmt::format("object {} has components and a mesh; divide it into two objects", object().id));
     refuse_second(object().has_mesh, "<mesh>");
@@ -195,23 +195,23 @@ void ModelParser::begin_mesh(const XmlElement&) {
     mesh_.begin(own_property_);
 }
 
-void ModelParser::begin_vertices(const XmlElement&) { refuse_second(has_vertices_, "<vertices>"); }
+void ModelParser::begin_vertices(const XmlTag&) { refuse_second(has_vertices_, "<vertices>"); }
 
-void ModelParser::begin_triangles(const XmlElement&) { refuse_second(has_triangles_, "<triangles>"); }
+void ModelParser::begin_triangles(const XmlTag&) { refuse_second(has_triangles_, "<triangles>"); }
 
-void ModelParser::begin_vertex(const XmlElement& element) { mesh_.add_vertex(element, parser_); }
+void ModelParser::begin_vertex(const XmlTag& element) { mesh_.add_vertex(element, parser_); }
 
-void ModelParser::begin_triangle(const XmlElement& element) {
+void ModelParser::begin_triangle(const XmlTag& element) {
     if (!mesh_.add_triangle(element, parser_)) note(part_.flat_triangles, {});
 }
 
-void ModelParser::begin_components(const XmlElement&) {
+void ModelParser::begin_components(const XmlTag&) {
     if (object().has_mesh)
         refuse_at(parser_, fmt::format("object {} has components and a mesh; divide it into two objects", object().id));
     refuse_second(object().has_components, "<components>");
 }
 
-void ModelParser::begin_component(const XmlElement& element) {
+void ModelParser::begin_component(const XmlTag& element) {
     reading_.budget.charge(1, sizeof(Reference));
     Reference component = reference(element, "component");
     check_component(component);
@@ -225,7 +225,7 @@ void ModelParser::finish_mesh() {
 
 void ModelParser::finish_object() { part_.numbers.emplace(object().id, part_.objects.size() - 1); }
 
-std::uint32_t ModelParser::identifier(const XmlElement& element, std::string_view key) const {
+std::uint32_t ModelParser::identifier(const XmlTag& element, std::string_view key) const {
     const char* const text = element.find(key);
     if (text == nullptr) refuse_at(parser_, fmt::format("<{}> has no {}", element.name().local, key));
     const auto number = parse_whole_number(text);
@@ -237,7 +237,7 @@ std::uint32_t ModelParser::identifier(const XmlElement& element, std::string_vie
 }
 
 /// Returns the identifier of a resource, which no other resource may have.
-std::uint32_t ModelParser::new_identifier(const XmlElement& element) {
+std::uint32_t ModelParser::new_identifier(const XmlTag& element) {
     const std::uint32_t id = identifier(element, "id");
     const auto [line, is_new] = lines_.try_emplace(id, parser_.line());
     if (is_new) return id;
@@ -245,7 +245,7 @@ std::uint32_t ModelParser::new_identifier(const XmlElement& element) {
               fmt::format("the id {} is that of the resource in line {}, too; give each its own id", id, line->second));
 }
 
-Reference ModelParser::reference(const XmlElement& element, std::string_view kind) {
+Reference ModelParser::reference(const XmlTag& element, std::string_view kind) {
     Reference to;
     to.object = identifier(element, "objectid");
     to.line = parser_.line();

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "io/meshes/three_mf/extensions.hpp"
+#include "io/meshes/three_mf/attributes.hpp"
 #include "io/meshes/three_mf/mesh_builder.hpp"
-#include "io/meshes/three_mf/model_part.hpp"
-#include "io/meshes/three_mf/xml_parser.hpp"
+#include "io/meshes/three_mf/model.hpp"
+#include "io/meshes/xml/xml_parser.hpp"
 
 namespace octopair::io::three_mf {
 
@@ -27,7 +27,7 @@ public:
     void parse(const TextSource& source);
 
     void prefix(std::string_view prefix, std::string_view uri) override;
-    void begin(const XmlElement& element) override;
+    void begin(const XmlTag& element) override;
     void end() override;
 
 private:
@@ -50,28 +50,28 @@ private:
     static const Rule* rule_for(Place within, std::string_view name);
 
     /// Returns the place within an element. Calls what its rule says.
-    Place enter(Place within, const XmlElement& element);
-    void note_extension(Place within, const XmlElement& element);
-    void begin_model(const XmlElement& element);
-    void begin_resources(const XmlElement& element);
-    void begin_build(const XmlElement& element);
-    void begin_item(const XmlElement& element);
-    void begin_materials(const XmlElement& element);
-    void begin_base(const XmlElement& element);
-    void begin_object(const XmlElement& element);
-    void begin_mesh(const XmlElement& element);
-    void begin_vertices(const XmlElement& element);
-    void begin_triangles(const XmlElement& element);
-    void begin_components(const XmlElement& element);
-    void begin_component(const XmlElement& element);
-    void begin_vertex(const XmlElement& element);
-    void begin_triangle(const XmlElement& element);
+    Place enter(Place within, const XmlTag& element);
+    void note_extension(Place within, const XmlTag& element);
+    void begin_model(const XmlTag& element);
+    void begin_resources(const XmlTag& element);
+    void begin_build(const XmlTag& element);
+    void begin_item(const XmlTag& element);
+    void begin_materials(const XmlTag& element);
+    void begin_base(const XmlTag& element);
+    void begin_object(const XmlTag& element);
+    void begin_mesh(const XmlTag& element);
+    void begin_vertices(const XmlTag& element);
+    void begin_triangles(const XmlTag& element);
+    void begin_components(const XmlTag& element);
+    void begin_component(const XmlTag& element);
+    void begin_vertex(const XmlTag& element);
+    void begin_triangle(const XmlTag& element);
     void finish_mesh();
     void finish_object();
 
-    std::uint32_t identifier(const XmlElement& element, std::string_view key) const;
-    std::uint32_t new_identifier(const XmlElement& element);
-    Reference reference(const XmlElement& element, std::string_view kind);
+    std::uint32_t identifier(const XmlTag& element, std::string_view key) const;
+    std::uint32_t new_identifier(const XmlTag& element);
+    Reference reference(const XmlTag& element, std::string_view kind);
     void check_component(const Reference& component) const;
     void refuse_second(bool& has, std::string_view what);
     void note(CountedNote& to, std::string_view what) const;

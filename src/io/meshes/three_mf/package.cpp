@@ -10,7 +10,7 @@
 #include "io/files/input_file.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/meshes/gltf/uri.hpp"
-#include "io/meshes/three_mf/xml_parser.hpp"
+#include "io/meshes/xml/xml_parser.hpp"
 
 namespace octopair::io::three_mf {
 
@@ -37,7 +37,7 @@ class RelationshipHandler final : public XmlHandler {
 public:
     explicit RelationshipHandler(const std::string& place) : place_(place) {}
 
-    void begin(const XmlElement& element) override {
+    void begin(const XmlTag& element) override {
         constexpr std::string_view start_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
         if (element.name().local != "Relationship") return;
         const char *const type = element.find("Type"), *const target = element.find("Target");
@@ -97,7 +97,7 @@ std::string Package::find_start() {
     const TextSource text = text_of(relationships, "a 3MF file");
     const std::string place = fmt::format("{}: {}", budget_.path(), relationships);
     RelationshipHandler handler(place);
-    XmlParser parser(place, handler);
+    XmlParser parser(place, handler, XmlParser::Mode::strict);
     text([&](std::string_view piece) {
         parser.parse(piece);
         return true;

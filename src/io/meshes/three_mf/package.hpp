@@ -15,10 +15,12 @@
 
 #include "base/memory.hpp"
 #include "io/meshes/read_budget.hpp"
-#include "io/meshes/three_mf/model_part.hpp"
 #include "io/meshes/three_mf/zip_archive.hpp"
 
 namespace octopair::io::three_mf {
+
+/// Calls its argument with the pieces of a text, until it returns false.
+using TextSource = std::function<void(const std::function<bool(std::string_view)>&)>;
 
 /// Returns the name of a part that a path names, without "/" at the begin: decodes %20 and the like, and removes "." and "..".
 std::string part_name(std::string_view path);

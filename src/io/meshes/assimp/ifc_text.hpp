@@ -1,0 +1,61 @@
+// The text of an IFC file (STEP, ISO 10303-21).
+//
+// - Elements: their descriptions in the names of Assimp's nodes, and what the text adds. Assimp loses encoded letters of
+//   names: "B\X2\00FC\X0\ro", for Büro, becomes "Bro". It does not read materials, and reads files that are cut.
+// - Schema: Assimp knows IFC2x3 alone, and crashes on geometry of other types.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+namespace octopair::io {
+
+/// An IFC element, as the name of its node describes it: TYPE_NAME_GLOBALID. Borrows from that name.
+struct IfcElement {
+    std::string_view type;
+    std::string_view name;  ///< empty if the element has none, or if Assimp has cut the node's name
+    std::string_view id;    ///< GlobalId; empty if Assimp has cut the node's name
+};
+
+/// Parses the name of a node of an IFC file. Returns nothing if the node is not an element.
+std::optional<IfcElement> parse_ifc_element(std::string_view node_name);
+
+/// Maps the GlobalId of an element to a text in UTF-8.
+using IfcTexts = std::unordered_map<std::string, std::string>;
+
+/// Facts that the text of an IFC file has and Assimp does not pass on.
+struct IfcText {
+    IfcTexts names;      ///< of elements that have one
+    IfcTexts materials;  ///< names of the materials that are associated with an element, joined by ", "
+    /// Types of the elements that have a body: a representation other than an axis, a footprint and the like. Without openings, spaces and
+    /// grids, which Assimp leaves out.
+    IfcTexts bodies;
+    std::map<std::string, std::uint64_t> left_out;  ///< number of elements with a shape that Assimp leaves out, by type
+    double largest_coordinate = 0;                  ///< of all points, without its sign, in the unit of the file
+    bool complete = false;                          ///< false: the text ends before the end of a STEP file
+};
+
+/// Reads a STEP text. An element is an instance whose first attribute is a text of 22 characters; its name is the third attribute. Text
+/// that is not STEP has no elements. Complexity: linear.
+IfcText read_ifc_text(std::string_view step);
+
+/// Returns a text of a STEP file in UTF-8. Decodes '', \\, \S\, \X\, \X2\ and \X4\. Keeps what is not a
+/// valid code.
+std::string decode_step_text(std::string_view text);
+
+/// Returns the name in FILE_SCHEMA, for example "IFC4"; empty if there is none. `step`: the text of the file, or its beginning.
+std::string ifc_schema(std::string_view step);
+
+/// Returns the geometric types in the text that IFC2x3 does not have, with their numbers: "12 IfcTriangulatedFaceSet, 3
+/// IfcIndexedPolyCurve". Complexity: linear in the text, for each of about 30 types.
+std::string types_beyond_ifc2x3(std::string_view step);
+
+/// Returns why Assimp fails on an IFC file, as far as its text shows, and what to do. Empty for other files, and for compressed ones.
+/// Throws: Error{bad_input, io_failed} if the file cannot be read.
+std::string ifc_remedy(const std::string& path);
+
+}  // namespace octopair::io

@@ -1,0 +1,121 @@
+// What users should know about a file that Assimp imported: warnings, what was not read, axes and unit.
+#include "io/meshes/assimp/scene_parts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <unordered_set>
+#include <utility>
+
+#include <assimp/metadata.h>
+#include <fmt/format.h>
+
+#include "io/formats/format_table.hpp"
+#include "io/meshes/assimp/ifc_text.hpp"
+
+namespace octopair::io {
+
+namespace {
+
+/// Returns the warning that octopair does not vouch for a format, or an empty text.
+std::string unchecked_format(const MeshFile& file) {
+    const FileFormat* const format = file.known().format;
+    if (format != nullptr && format->reader == FormatReader::checked_assimp) return {};
+    const std::string name = format != nullptr ? std::string(format->name) : file.known().ending.substr(1);
+    return fmt::format(
+        "{}: Assimp reads {}; octopair does not vouch for it: check the number of objects and the bounds", file.path(),
+        name);
+}
+
+/// Returns the GlobalIds of the elements that instances belong to. An empty id stands for elements with a cut name.
+std::unordered_set<std::string> elements_read(const MeshFile& file) {
+    std::unordered_set<std::string> ids;
+    for (const MeshInstance& instance : file.instances()) {
+        for (const aiNode* node = instance.node; node != nullptr; node = node->mParent) {
+            const auto element = parse_ifc_element({node->mName.C_Str(), node->mName.length});
+            if (!element) continue;
+            ids.emplace(element->id);
+            break;
+        }
+    }
+    return ids;
+}
+
+/// Returns a warning about elements of an IFC file that have a body but no instance, or an empty text.
+std::string lost_elements(const MeshFile& file) {
+    const IfcText& text = file.ifc_text();
+    if (text.bodies.empty()) return {};
+    const std::unordered_set<std::string> read = elements_read(file);
+    if (read.contains("")) return {};  // which elements they are is not known
+    std::vector<std::string> lost;
+    for (const auto& [id, type] : text.bodies) {
+        if (!read.contains(id)) lost.push_back(id);
+    }
+    if (lost.empty()) return {};
+    const std::string& first = *std::min_element(lost.begin(), lost.end());
+    const auto name = text.names.find(first);
+    return fmt::format(
+        "{}: {} of {} elements with a body were not read, for example {} {}{}; Assimp knows only IFC2x3: export the "
+        "model as "
+        "IFC2x3, glTF or OBJ",
+        file.path(), lost.size(), text.bodies.size(), text.bodies.at(first), first,
+        name == text.names.end() ? "" : fmt::format(" ('{}')", name->second));
+}
+
+/// Returns what the importer of DirectX left out: corners beyond the vertices. The text of a file is checked before; a binary file is not.
+std::vector<std::string> lost_corners(const MeshFile& file) {
+    if (file.known().ending != ".x") return {};
+    std::uint64_t faces = 0;
+    for (const aiMesh* mesh : std::span(file.scene().mMeshes, file.scene().mNumMeshes)) {
+        for (const aiFace& face : std::span(mesh->mFaces, mesh->mNumFaces)) faces += face.mNumIndices < 3;
+    }
+    if (faces == 0) return {};
+    return {fmt::format("faces with fewer than three corners within the vertices ({})", faces)};
+}
+
+/// Returns what the content of the file, and its importer, show as left out.
+std::vector<std::string> lost_parts(const MeshFile& file) {
+    std::vector<std::string> lost = file.left_out();
+    for (std::string& part : lost_corners(file)) lost.push_back(std::move(part));
+    return lost;
+}
+
+}  // namespace
+
+std::vector<std::string> import_warnings(const MeshFile& file) {
+    std::vector<std::string> warnings = {unchecked_format(file), lost_elements(file)};
+    if (const std::vector<std::string> lost = lost_parts(file); !lost.empty()) {
+        warnings.push_back(fmt::format("{}: Assimp does not read {}; export the model as glTF, OBJ or STL", file.path(),
+                                       fmt::join(lost, ", ")));
+    }
+    std::erase(warnings, "");
+    return warnings;
+}
+
+std::vector<std::string> left_out_of(const MeshFile& file) {
+    std::vector<std::string> left_out = lost_parts(file);
+    for (const auto& [type, count] : file.ifc_text().left_out) left_out.push_back(fmt::format("{} ({})", type, count));
+    if (const unsigned count = file.scene().mNumAnimations) left_out.push_back(fmt::format("animations ({})", count));
+    return left_out;
+}
+
+SceneSpace space_of(const MeshFile& file) {
+    SceneSpace result = format_space(file.path());
+    const aiMetadata* const facts = file.scene().mMetaData;
+    if (file.known().ending != ".fbx" || facts == nullptr) return result;
+    int up = -1, sign = 1;
+    if (facts->Get("UpAxis", up) && (!facts->Get("UpAxisSign", sign) || sign > 0))
+        result.up = up == 1 ? UpAxis::y : up == 2 ? UpAxis::z : UpAxis::unknown;
+    float scale = 0;  // centimetres in a unit
+    constexpr std::array<std::pair<float, const char*>, 5> units = {
+        {{0.1f, "mm"}, {1, "cm"}, {100, "m"}, {2.54f, "in"}, {30.48f, "ft"}}};
+    if (!facts->Get("UnitScaleFactor", scale)) return result;
+    for (const auto& [size, name] : units) {
+        if (scale == size) result.unit = name;
+    }
+    return result;
+}
+
+}  // namespace octopair::io
