@@ -9,7 +9,7 @@
 #include <csignal>
 #include <system_error>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 
 extern char** environ;
 

@@ -28,7 +28,7 @@ public:
 private:
     const void* owner_;
     const CallScope* outer_;
-    const CallScope* previous_;  // of this thread, restored at the end
+    const CallScope* previous_;  // innermost call of this thread before, restored at the end
 };
 
 /// Replaces the calls of this thread by those of a callback's call, until the scope ends.

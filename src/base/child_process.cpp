@@ -29,7 +29,7 @@ struct Start {
     int descriptor_count;
     bool keeps_stderr;
     pid_t parent;
-    int error;  // of the child
+    int error;  // errno of the child
 };
 
 /// Opens /dev/null as a descriptor. Returns false after an error.

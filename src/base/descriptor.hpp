@@ -1,9 +1,12 @@
-// Descriptor: owns an open file descriptor and closes it.
+// Descriptor: owns an open file descriptor and closes it. fail_io() turns a failed system call on a file into an Error.
 #pragma once
 
 #include <unistd.h>
 
+#include <string_view>
 #include <utility>
+
+#include "base/private_export.hpp"
 
 namespace octopair {
 
@@ -30,5 +33,9 @@ public:
 private:
     int number_ = -1;
 };
+
+/// Throws: Error{io_failed} "FILE: ACTION: REASON", where REASON is the system's text for `error_number`;
+/// Error{resource_limit} if `error_number` means that memory or descriptors ran out.
+OCTOPAIR_PRIVATE_EXPORT [[noreturn]] void fail_io(std::string_view file, std::string_view action, int error_number);
 
 }  // namespace octopair

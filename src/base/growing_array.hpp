@@ -1,4 +1,5 @@
-// GrowingArray: a vector of plain data in a Buffer, so that a large array lies on huge pages.
+// Arrays that grow. GrowingArray: a vector of plain data in a Buffer, so that a large array lies on huge pages. reserve_more(): makes room
+// in a vector before a change that must not fail half-way.
 //
 // With small pages, random access to tens of megabytes costs as much for address translation as for the memory itself.
 #pragma once
@@ -8,10 +9,19 @@
 #include <cstring>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "base/memory.hpp"
 
 namespace octopair {
+
+/// Makes room for `more` additional elements. Doubles the capacity at least, so that repeated small calls do not copy each
+/// time.
+template <typename T>
+void reserve_more(std::vector<T>& list, std::size_t more) {
+    const std::size_t all = list.size() + more;
+    if (all > list.capacity()) list.reserve(std::max(all, 2 * list.capacity()));
+}
 
 template <typename T>
 class GrowingArray {

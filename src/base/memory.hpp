@@ -2,6 +2,8 @@
 //
 // Large buffers are mapped separately. So their memory returns to the system when they are freed; an allocator would keep it in
 // fragments. They also request huge pages, which saved 4 to 24% of the time of the sort.
+//
+// prefetch(): for code that includes no SIMD library.
 #pragma once
 
 #include <cstddef>
@@ -96,5 +98,14 @@ private:
     std::unique_ptr<T, Free> memory_;
     std::size_t size_ = 0;
 };
+
+/// Starts to load the cache line at `address`, for reading or writing. The address may be invalid.
+inline void prefetch(const void* address) {
+#if defined(__GNUC__)
+    __builtin_prefetch(address);
+#else
+    (void)address;
+#endif
+}
 
 }  // namespace octopair

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/prefetch.hpp"
+#include "base/memory.hpp"
 #include "boxes/box_kernel.hpp"
 #include "octopair/error.hpp"
 

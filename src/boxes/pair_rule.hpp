@@ -24,7 +24,7 @@ inline bool within_reach(const Box3d& a, const Box3d& b, double reach) {
 /// Pairs, some of which are in doubt.
 struct DoubtfulPairs {
     std::span<const Pair> pairs;
-    std::span<const std::uint32_t> positions;  ///< of the pairs in doubt
+    std::span<const std::uint32_t> positions;  ///< positions of the pairs in doubt
 
     const Pair& operator[](std::size_t i) const { return pairs[positions[i]]; }
     std::size_t size() const { return positions.size(); }

@@ -12,8 +12,8 @@
 #include "cli/command/option_values.hpp"
 #include "cli/input/input_set.hpp"
 #include "io/boxes/npy.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/formats/format_table.hpp"
-#include "io/formats/format_version.hpp"
 #include "io/json/json_fields.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE

@@ -13,7 +13,7 @@
 #include "cli/subcommands.hpp"
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/prefetch.hpp"
+#include "base/memory.hpp"
 #include "base/tuning.hpp"
 #include "octopair/objects.hpp"
 

@@ -8,11 +8,11 @@
 #include "io/boxes/csv.hpp"
 #include "io/boxes/npy.hpp"
 #include "io/files/failure.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/json/json_scene.hpp"
 #include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
-#include "io/meshes/plain/plain_scene.hpp"
+#include "io/meshes/plain/plain_mesh.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 
 namespace octopair::io {
@@ -209,22 +209,22 @@ std::optional<NpyFrames> open_frames(const std::string& path) {
     return NpyFrames::open(path);
 }
 
-std::optional<Fault> find_fault(const Boxes& boxes) {
+std::optional<InvalidBox> find_invalid_box(const Boxes& boxes) {
     return std::visit(
-        [](auto span) -> std::optional<Fault> {
+        [](auto span) -> std::optional<InvalidBox> {
             for (std::size_t i = 0; i < span.size(); ++i) {
                 const auto what = fault_of(span[i]);
-                if (what) return Fault{0, i, *what};
+                if (what) return InvalidBox{0, i, *what};
             }
             return std::nullopt;
         },
         boxes);
 }
 
-std::optional<Fault> find_fault(const LoadedScene& scene) {
+std::optional<InvalidBox> find_invalid_box(const LoadedScene& scene) {
     for (std::uint64_t frame = 0; frame < scene.frames; ++frame) {
-        const auto fault = find_fault(scene.frame(frame).boxes);
-        if (fault) return Fault{frame, fault->object, fault->what};
+        const auto fault = find_invalid_box(scene.frame(frame).boxes);
+        if (fault) return InvalidBox{frame, fault->object, fault->what};
     }
     return std::nullopt;
 }

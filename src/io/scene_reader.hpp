@@ -47,15 +47,15 @@ void check_frame_counts(std::span<const FrameCount> counts, std::span<const std:
 std::optional<NpyFrames> open_frames(const std::string& path);
 
 /// An object whose box is invalid. `what` says why, for example "min x is nan, not a finite number".
-struct Fault {
+struct InvalidBox {
     std::uint64_t frame;
     std::uint64_t object;
     std::string what;
 };
 
 /// Returns the first invalid box of the scene, or nothing if all boxes are valid.
-std::optional<Fault> find_fault(const LoadedScene& scene);
-/// Returns the first invalid box of one frame. Fault::frame is 0.
-std::optional<Fault> find_fault(const Boxes& boxes);
+std::optional<InvalidBox> find_invalid_box(const LoadedScene& scene);
+/// Returns the first invalid box of one frame. InvalidBox::frame is 0.
+std::optional<InvalidBox> find_invalid_box(const Boxes& boxes);
 
 }  // namespace octopair::io

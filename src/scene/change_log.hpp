@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "base/reserve.hpp"
+#include "base/growing_array.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
 #include "scene/object_table.hpp"

@@ -20,7 +20,6 @@
 
 #include "base/growing_array.hpp"
 #include "base/private_export.hpp"
-#include "base/reserve.hpp"
 #include "boxes/box_kernel.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/scene.hpp"

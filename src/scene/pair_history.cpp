@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "base/reserve.hpp"
+#include "base/growing_array.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
 #include "octopair/error.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/reserve.hpp"
+#include "base/growing_array.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

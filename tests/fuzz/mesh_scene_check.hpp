@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "io/loaded_scene.hpp"
-#include "io/loaded_shapes.hpp"
 
 namespace octopair::test {
 

@@ -1,5 +1,5 @@
 // Tests result files of events.
-#include "io/results/event_writer.hpp"
+#include "io/results/pair_writer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests which format a file has, by its content and its name, and what is refused with a remedy.
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 
 #include <gtest/gtest.h>
 

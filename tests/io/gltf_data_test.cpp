@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "io/gltf_reading.hpp"
-#include "io/meshes/gltf/uri.hpp"
+#include "io/meshes/uri.hpp"
 
 namespace octopair::test {
 namespace {
@@ -237,7 +237,7 @@ TEST(GltfData, BuffersAreBase64) {
          Strings{"", "f", "fo", "foo", "foob", "fooba", "foobar", std::string("\xFF\0\x80", 3)}) {
         auto coded = base64(text);
         for (int i = 0; i < 2; ++i) {  // with and without padding
-            const auto bytes = io::gltf::decoded_base64(coded, {});
+            const auto bytes = io::decoded_base64(coded, {});
             ASSERT_TRUE(bytes);
             EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()), text);
             coded.erase(std::min(coded.find('='), coded.size()));
@@ -329,7 +329,7 @@ TEST(GltfData, StopsSoon) {
                      [&] { (void)io::parse_gltf_scene("f", as_buffer(builder.text()), {}, stopped.get_token()); }),
             "");
     }
-    EXPECT_NE(error_of(ErrorCode::cancelled, [&] { (void)io::gltf::decoded_base64("AAAA", stopped.get_token()); }), "");
+    EXPECT_NE(error_of(ErrorCode::cancelled, [&] { (void)io::decoded_base64("AAAA", stopped.get_token()); }), "");
 }
 
 }  // namespace

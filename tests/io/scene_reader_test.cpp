@@ -161,20 +161,20 @@ TEST(SceneReader, RefusesFramesThatDoNotAgree) {
 }
 
 TEST(SceneReader, FindsInvalidBoxes) {
-    EXPECT_FALSE(io::find_fault(scene_of<float>({box_at(0), box_at(1)})));
-    EXPECT_FALSE(io::find_fault(scene_of<float>({})));
+    EXPECT_FALSE(io::find_invalid_box(scene_of<float>({box_at(0), box_at(1)})));
+    EXPECT_FALSE(io::find_invalid_box(scene_of<float>({})));
     auto bad = box_at(0);
     bad.min[1] = -std::nanf("");
-    EXPECT_EQ(io::find_fault(scene_of<float>({box_at(0), bad}))->what, "min y is nan, not a finite number");
+    EXPECT_EQ(io::find_invalid_box(scene_of<float>({box_at(0), bad}))->what, "min y is nan, not a finite number");
     bad = box_at(0);
     bad.max[2] = INFINITY;
-    const auto fault = io::find_fault(scene_of<float>({box_at(0), box_at(1), box_at(2), bad}, 2, true));
+    const auto fault = io::find_invalid_box(scene_of<float>({box_at(0), box_at(1), box_at(2), bad}, 2, true));
     EXPECT_EQ(fault->frame, 1u);
     EXPECT_EQ(fault->object, 1u);
     EXPECT_EQ(fault->what, "max z is inf, not a finite number");
     auto inverted = wide_box_at(0.25);
     inverted.max[0] = 0.1;
-    EXPECT_EQ(io::find_fault(scene_of<double>({inverted}))->what, "min x 0.25 is above max x 0.1");
+    EXPECT_EQ(io::find_invalid_box(scene_of<double>({inverted}))->what, "min x 0.25 is above max x 0.1");
 }
 
 }  // namespace

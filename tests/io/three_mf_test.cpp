@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/formats.hpp"
-#include "io/formats/format_version.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/scene_reader.hpp"
 #include "io/three_mf_reading.hpp"
 

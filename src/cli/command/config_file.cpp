@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

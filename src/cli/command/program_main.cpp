@@ -7,7 +7,7 @@
 #include <new>
 #include <system_error>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "cli/command/failure.hpp"
 #include "octopair/error.hpp"
 

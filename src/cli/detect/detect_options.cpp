@@ -13,8 +13,7 @@
 #include "cli/detect/event_detection.hpp"
 #include "cli/engine_choice.hpp"
 #include "io/files/input_file.hpp"
-#include "io/files/stream_input.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

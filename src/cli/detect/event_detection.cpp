@@ -12,7 +12,7 @@
 #include "cli/input/frame_set.hpp"
 #include "cli/input/join.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/results/event_writer.hpp"
+#include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

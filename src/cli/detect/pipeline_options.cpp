@@ -7,7 +7,7 @@
 #include "cli/command/command.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/detect/detection.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

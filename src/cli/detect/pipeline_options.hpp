@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair::cli {

@@ -15,7 +15,7 @@
 #include "cli/input/join.hpp"
 #include "cli/output/piece_output.hpp"
 #include "cli/ranks/cluster.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
 #include "verification/verifier.hpp"

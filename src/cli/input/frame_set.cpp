@@ -6,7 +6,7 @@
 
 #include "boxes/box_kernel.hpp"
 #include "io/files/failure.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -66,7 +66,7 @@ void FrameSet::read(std::uint64_t frame, std::span<Box<Real>> boxes, const std::
     for (const MovingPart& part : moving_) {
         const auto place = boxes.first(std::size_t(part.file.shape().objects));
         part.file.read(frame, place, stop);
-        const auto fault = io::find_fault(std::span<const Box<Real>>(place));
+        const auto fault = io::find_invalid_box(std::span<const Box<Real>>(place));
         if (fault) {
             throw Error(ErrorCode::bad_input,
                         fmt::format("{}: frame {}: object {}: {}", part.path, frame, fault->object, fault->what));

@@ -10,7 +10,7 @@
 
 #include "cli/input/isolated_read.hpp"
 #include "io/boxes/npy.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 
 namespace octopair::cli {
 
@@ -46,7 +46,7 @@ Box3d InputSet::bounds() const {
 
 std::optional<InputSet::Fault> InputSet::find_fault() const {
     scene.check_mapped();
-    const auto fault = io::find_fault(scene);
+    const auto fault = io::find_invalid_box(scene);
     if (!fault) return std::nullopt;
     const std::string frame = scene.moving ? fmt::format("frame {}: ", fault->frame) : "";
     const std::uint64_t position = fault->frame * total + begin + fault->object;

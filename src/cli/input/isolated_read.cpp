@@ -22,7 +22,7 @@
 #include "base/descriptor.hpp"
 #include "cli/input/scene_transfer.hpp"
 #include "io/files/failure.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 #include "octopair/error.hpp"
 

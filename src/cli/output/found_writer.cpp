@@ -8,7 +8,7 @@
 #include "cli/detect/input_warnings.hpp"
 #include "cli/detect/tolerance.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/results/collision_writer.hpp"
 #include "io/results/html_report.hpp"
 #include "io/results/pair_writer.hpp"

@@ -11,7 +11,7 @@
 #include "cli/detect/pipeline_options.hpp"
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE

@@ -12,7 +12,7 @@
 #include "cli/command/progress_line.hpp"
 #include "cli/server/server_choice.hpp"
 #include "cli/subcommands.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"
 #include "octopair/job_client.hpp"

@@ -21,7 +21,7 @@
 #include "cli/view/server_view.hpp"
 #include "cli/view/view_options.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/results/result_file.hpp"
 #include "viewer/scene/page_file.hpp"
 #include "viewer/server/messages.hpp"

@@ -10,7 +10,7 @@
 #include "cli/command/option_values.hpp"
 #include "cli/detect/detect_options.hpp"
 #include "cli/server/server_choice.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/results/result_file.hpp"
 #include "octopair/error.hpp"
 

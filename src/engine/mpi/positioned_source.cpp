@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "base/prefetch.hpp"
+#include "base/memory.hpp"
 
 namespace octopair {
 

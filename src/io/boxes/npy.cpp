@@ -13,7 +13,7 @@
 #include "io/files/failure.hpp"
 #include "io/files/file_mapping.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 
 namespace octopair::io {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 
 namespace octopair::io {
 

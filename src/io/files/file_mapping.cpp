@@ -44,7 +44,7 @@ Mapping* mapping_of(const std::byte* address) {
     return nullptr;
 }
 
-struct sigaction previous_action;  // of SIGBUS, before install_handler()
+struct sigaction previous_action;  // action of SIGBUS before install_handler()
 
 /// Replaces a page that cannot be read. For any other address, restores the previous action, which handles the signal
 /// when the access is repeated.

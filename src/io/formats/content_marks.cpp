@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "io/formats/foreign_content.hpp"
+#include "io/files/letter_case.hpp"
 #include "io/formats/format_table.hpp"
 
 namespace octopair::io {
@@ -20,7 +20,7 @@ using namespace std::string_view_literals;
 struct Mark {
     std::size_t offset;
     std::string_view bytes;
-    std::string_view ending;  ///< of the format, or its name
+    std::string_view ending;  ///< ending of the format, or its name
 };
 
 constexpr auto binary_marks = std::to_array<Mark>({
@@ -268,8 +268,7 @@ bool is_legal_packing(const Packing& packing, std::string_view ending) {
 
 /// HTML, or XHTML after an XML declaration and comments.
 bool is_html(std::string_view text) {
-    std::string begin(text);
-    for (char& c : begin) c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+    const std::string begin = in_lower_case(text);
     return begin.starts_with("<!doctype html") || first_element(begin) == "html" || first_element(begin) == "head";
 }
 

@@ -1,7 +1,8 @@
 // Recognises the content of a file by its first bytes.
 //
 // - A mark is unmistakable: no valid file of another format begins with it. So a file with a mark has that format, whatever its name says.
-// - A file is wrapped if its content is not the model itself: compressed, a pointer of Git LFS, an HTML page (foreign_content.hpp has more).
+// - A file is wrapped if its content is not the model itself: compressed, a pointer of Git LFS, an HTML page. foreign_content.cpp recognises content that is
+//   no model at all, such as a program, a letter, or the answer of a web server.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@ namespace octopair::io {
 /// The first bytes of a file.
 struct FileHead {
     std::string bytes;       ///< at most head_bytes
-    std::uint64_t size = 0;  ///< of the whole file
-    std::string tail = {};   ///< of a ZIP archive: the last bytes, at most tail_bytes, which have its directory
+    std::uint64_t size = 0;  ///< size of the whole file
+    std::string tail = {};   ///< last bytes of a ZIP archive, at most tail_bytes, which have its directory
 
     static constexpr std::size_t head_bytes = 4096, tail_bytes = 65536;
     static constexpr std::string_view zip_mark = "PK\x03\x04";
@@ -33,5 +34,12 @@ std::string_view marked_format(const FileHead& head);
 /// Returns what a wrapped file is and what to do, for example "is compressed with gzip; ...". Empty: the file is not wrapped. Formats that
 /// are wrapped themselves, such as 3MF (ZIP), are not. `ending`: that of the file's name, in lower case.
 std::string wrapping_of(const FileHead& head, std::string_view ending);
+
+/// Returns what a file without the mark of a format is, and what to do, for example "is a program, not a model; ...". Empty: nothing is
+/// recognised. `ending`: that of the file's name, in lower case.
+std::string foreign_content(const FileHead& head, std::string_view ending);
+
+/// Returns the name of the first element of an XML text, or an empty text. The text may be cut.
+std::string_view first_element(std::string_view text);
 
 }  // namespace octopair::io

@@ -1,4 +1,5 @@
-#include "io/formats/foreign_content.hpp"
+// Content that is no model at all.
+#include "io/formats/content_marks.hpp"
 
 #include <algorithm>
 #include <array>

@@ -13,7 +13,7 @@ namespace octopair::io {
 enum class FormatReader : std::uint8_t {
     octopair,        ///< a reader of octopair
     checked_assimp,  ///< Assimp; octopair compares the result with the file
-    assimp,          ///< Assimp; octopair does not vouch for the result, and a warning says so
+    assimp,          ///< Assimp; octopair does not check the result, and a warning says so
     nobody,          ///< files are refused; FileFormat::remedy says what to do
 };
 

@@ -8,7 +8,7 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/json/json_fields.hpp"
 
 namespace octopair::io {
@@ -21,7 +21,7 @@ std::string item(const std::string& place, std::size_t i) { return fmt::format("
 
 /// Reads the patterns for one object of a pair: a pattern for its name, or an object with a pattern for each detail that matters.
 ColumnPatterns patterns(const JsonFields& rule, std::string_view key) {
-    const json& value = rule.need(key);
+    const json& value = rule.required(key);
     if (value.is_string()) return {rule.text(key)};
     if (!value.is_object()) refuse_json_type(rule.place_of(key), value, "a string or an object");
     const JsonFields fields(value, rule.place_of(key));

@@ -1,4 +1,4 @@
-// Parses untrusted JSON with bounds, and reads the parsed objects key by key.
+// JsonFields: reads parsed JSON objects key by key.
 //
 // Each error is one line that names the file, the place in the file, the key, and what is wrong.
 #pragma once
@@ -6,25 +6,16 @@
 #include <cstdint>
 #include <initializer_list>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "io/json/json_text.hpp"
 #include "octopair/shapes.hpp"
 
 namespace octopair::io {
-
-/// Parses `text`. `file` is the name that messages begin with.
-/// Throws: Error{bad_input} for a syntax error, a byte 0, a key that one object has twice, or more than `max_levels` levels of
-/// nesting; Error{cancelled} soon after a stop request.
-nlohmann::json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop = {},
-                          int max_levels = 16);
-
-/// Returns text of a file in a form for messages: at most 60 bytes, with '?' for control characters.
-std::string shown_text(std::string_view text);
 
 /// Throws: Error{bad_input} "PLACE: a number, not WANTED": `value` has another type than it must have.
 [[noreturn]] void refuse_json_type(const std::string& place, const nlohmann::json& value, std::string_view wanted);
@@ -50,7 +41,7 @@ public:
     /// Returns the value of `key`, or null if the object does not have the key.
     const nlohmann::json* find(std::string_view key) const;
     /// Returns the value of `key`. Throws: Error{bad_input} if the object does not have the key.
-    const nlohmann::json& need(std::string_view key) const;
+    const nlohmann::json& required(std::string_view key) const;
 
     double number(std::string_view key) const;
     double at_least_zero(std::string_view key) const;

@@ -11,13 +11,13 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/json/json_fields.hpp"
 #ifdef OCTOPAIR_WITH_MESHES
 #include "io/meshes/assimp/mesh_file.hpp"
 #include "io/meshes/assimp/scene_parts.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
-#include "io/meshes/plain/plain_scene.hpp"
+#include "io/meshes/plain/plain_mesh.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 #endif
 
@@ -57,7 +57,7 @@ public:
         const JsonFields fields(root, std::string(file_));
         fields.allow({"objects", "shapes"});
         if (const json* shapes = fields.find("shapes")) add_shapes(*shapes);
-        const json::array_t& objects = json_array(fields.need("objects"), fields.place_of("objects"));
+        const json::array_t& objects = json_array(fields.required("objects"), fields.place_of("objects"));
         loaded_.geometry.reserve(objects.size());
         loaded_.poses.reserve(objects.size());
         for (std::size_t i = 0; i < objects.size(); ++i) {
@@ -106,7 +106,7 @@ private:
     }
 
     std::uint32_t shape_number(const JsonFields& fields) {
-        const json& shape = fields.need("shape");
+        const json& shape = fields.required("shape");
         if (!shape.is_string()) {
             loaded_.shapes.push_back(json_shape(shape, fields.place_of("shape"), load_mesh_, stop_));
             return std::uint32_t(loaded_.shapes.size() - 1);
@@ -213,7 +213,7 @@ LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()), stop);
     const std::filesystem::path directory = std::filesystem::path(path).parent_path();
-    LoadedScene meshes;  // what the mesh files say, but for their shapes
+    LoadedScene meshes;  // warnings and bounds of the mesh files that the scene names
     const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), meshes, stop); };
     if (text.size() == 0) refuse(path, "is empty");  // it was not when its format was decided
     LoadedScene scene = parse_json_scene({text.data(), text.size()}, path, load, stop);

@@ -1,4 +1,5 @@
-#include "io/json/json_shape.hpp"
+// json_shape(): one shape of a JSON scene.
+#include "io/json/json_scene.hpp"
 
 #include <cmath>
 
@@ -60,7 +61,7 @@ bool is_point(const json& value) {
 }
 
 std::vector<Point3d> points(const JsonFields& fields, std::string_view key, const std::stop_token& stop) {
-    const json::array_t& array = json_array(fields.need(key), fields.place_of(key));
+    const json::array_t& array = json_array(fields.required(key), fields.place_of(key));
     std::vector<Point3d> points;
     points.reserve(array.size());
     for (std::size_t i = 0; i < array.size(); ++i) {
@@ -101,7 +102,7 @@ bool is_triangle(const json& value, std::size_t vertices) {
 shape::Mesh inline_mesh(const JsonFields& fields, const std::stop_token& stop) {
     shape::Mesh mesh;
     mesh.vertices = points(fields, "vertices", stop);
-    const json::array_t& triangles = json_array(fields.need("triangles"), fields.place_of("triangles"));
+    const json::array_t& triangles = json_array(fields.required("triangles"), fields.place_of("triangles"));
     mesh.triangles.reserve(triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         check_stop(stop, i);

@@ -1,12 +1,22 @@
-// Formats JSON text for result files.
+// JSON as text: parses untrusted text with bounds, and formats text for result files.
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace octopair::io {
+
+/// Parses `text`. `file` is the name that messages begin with.
+/// Throws: Error{bad_input} for a syntax error, a byte 0, a key that one object has twice, or more than `max_levels` levels of
+/// nesting; Error{cancelled} soon after a stop request.
+nlohmann::json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop = {},
+                          int max_levels = 16);
+
+/// Returns text of a file in a form for messages: at most 60 bytes, with '?' for control characters.
+std::string shown_text(std::string_view text);
 
 /// Returns `text` as a JSON string with quotes. Invalid UTF-8 becomes U+FFFD.
 std::string json_string(std::string_view text);

@@ -28,12 +28,12 @@ struct WorldView {
 BoundedPoint posed(const WorldView& world, const PlacedMesh& object, const Point3d& vertex) {
     const BoundedPoint point = object.pose.apply(vertex);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (const double at : {point.value[axis], point.low[axis], point.high[axis]}) {
-            if (std::isfinite(at)) continue;
-            refuse(world.budget.path(),
-                   fmt::format("{} '{}': its transforms move the vertex {:.6g}, {:.6g}, {:.6g} "
-                               "to the coordinate {}, which is not finite",
-                               world.placed.noun, object.name, vertex[0], vertex[1], vertex[2], number_text(at)));
+        for (const double coordinate : {point.value[axis], point.low[axis], point.high[axis]}) {
+            if (std::isfinite(coordinate)) continue;
+            refuse(world.budget.path(), fmt::format("{} '{}': its transforms move the vertex {:.6g}, {:.6g}, {:.6g} "
+                                                    "to the coordinate {}, which is not finite",
+                                                    world.placed.noun, object.name, vertex[0], vertex[1], vertex[2],
+                                                    number_text(coordinate)));
         }
     }
     return point;
@@ -64,10 +64,10 @@ std::vector<Point3d> world_vertices(const WorldView& world, const PlacedMesh& ob
     for (const Point3d& vertex : world.mesh(object).triangles.vertices) {
         if (places.size() % 65536 == 0) world.budget.checkpoint();
         places.push_back(posed(world, object, vertex).value);
-        for (const double at : places.back()) {
-            if (std::isfinite(float(at))) continue;
+        for (const double coordinate : places.back()) {
+            if (std::isfinite(float(coordinate))) continue;
             refuse(world.budget.path(), fmt::format("{} '{}': the coordinate {} is beyond the range of float32",
-                                                    world.placed.noun, object.name, number_text(at)));
+                                                    world.placed.noun, object.name, number_text(coordinate)));
         }
     }
     return places;

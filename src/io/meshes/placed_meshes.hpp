@@ -42,12 +42,12 @@ struct PlacedMesh {
 };
 
 struct PlacedMeshes {
-    std::string_view noun;  ///< what the format calls an object, for messages, for example "node"
+    std::string_view noun;  ///< the word of the format for an object, for messages, for example "node"
     std::vector<SharedMesh> meshes;
     std::vector<PlacedMesh> objects;
 };
 
-/// Returns the scene of all objects, or of all their triangles. Does not set what else the reader knows: LoadedScene::largest_rounded,
+/// Returns the scene of all objects, or of all their triangles. The reader sets LoadedScene::largest_rounded,
 /// warnings and space. Takes the meshes and the names.
 /// Throws: Error{bad_input} that names the object, if a vertex in the world is not finite, or for triangles beyond the range of float32;
 /// Error{resource_limit, cancelled}.

@@ -23,7 +23,7 @@ struct NumberList {
 
 NumberList numbers_of(std::string_view text, std::string_view separators = {});
 
-/// As numbers_of(), but a number may have a comma as decimal point. Requires: white space separates the numbers.
+/// Like numbers_of(), but a number may have a comma as decimal point. Requires: white space separates the numbers.
 NumberList numbers_with_commas_of(std::string_view text);
 
 /// Returns a text with these numbers, separated by spaces.
@@ -32,7 +32,7 @@ std::string list_text(const std::vector<double>& numbers);
 struct TextToken {
     std::string_view text;   ///< a name, number or string, or a mark; empty at the end
     std::size_t line = 0;    ///< from 1
-    std::size_t offset = 0;  ///< of its first byte in the file
+    std::size_t offset = 0;  ///< offset of its first byte in the file
 };
 
 class TextTokens {

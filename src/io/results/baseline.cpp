@@ -9,7 +9,7 @@
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/json/json_text.hpp"
 #include "io/results/collision_columns.hpp"

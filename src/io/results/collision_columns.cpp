@@ -11,7 +11,7 @@ RecordedObject recorded(std::uint32_t object, const ObjectNames& names) {
     return recorded;
 }
 
-/// Adds what a finding knows: for objects that are apart the distance, for others depth and contacts.
+/// Adds the content of a finding: for objects that are apart the distance, for others depth and contacts.
 void add_finding(CollisionRecord& row, const Finding& finding, const CollisionForm& form) {
     const CollisionClass what = finding.collision_class;
     if (what == CollisionClass::unknown) return;

@@ -13,10 +13,13 @@
 #include <string_view>
 #include <vector>
 
+#include "io/files/failure.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/object_details.hpp"
 #include "io/results/collision_row.hpp"
 #include "octopair/pipeline.hpp"
+
+#include <fmt/format.h>
 
 namespace octopair::io {
 
@@ -31,7 +34,7 @@ struct RecordedObject {
 
 using NearestPoints = std::array<Point3d, 2>;
 
-/// What a row says of a collision. A value that the result does not know is empty.
+/// Content of a row. A value that the result does not know is empty.
 struct CollisionRecord {
     RecordedObject a, b;
     std::optional<Change> change = {};
@@ -141,5 +144,26 @@ CollisionRecord read_collision(const JsonFields& row);
 using CsvFieldOf = std::function<std::string_view(std::string_view name)>;
 /// Reads a row of a table. The record borrows the fields. `place` is the beginning of messages. Throws: as read_collision().
 CollisionRecord read_csv_collision(const CsvFieldOf& field, const std::string& place);
+
+/// Number of words of the values of a type.
+template <typename Word>
+inline constexpr std::size_t words_of = 0;
+template <>
+inline constexpr std::size_t words_of<CollisionClass> = collision_classes;
+template <>
+inline constexpr std::size_t words_of<DepthKind> = 3;
+template <>
+inline constexpr std::size_t words_of<Change> = 3;
+
+/// Returns the value whose word (word_of()) is `text`. Throws: Error{bad_input} that begins with `place` and names all words.
+template <typename Word>
+Word value_of_word(std::string_view text, const std::string& place) {
+    std::string known;
+    for (std::size_t i = 0; i < words_of<Word>; ++i) {
+        if (word_of(Word(i)) == text) return Word(i);
+        known += fmt::format("{}{}", i == 0 ? "" : ", ", word_of(Word(i)));
+    }
+    refuse(place, fmt::format("'{}' is none of {}", shown_text(text), known));
+}
 
 }  // namespace octopair::io

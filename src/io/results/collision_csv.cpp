@@ -8,7 +8,6 @@
 
 #include "io/json/json_text.hpp"
 #include "io/results/collision_columns.hpp"
-#include "io/results/collision_words.hpp"
 
 namespace octopair::io {
 

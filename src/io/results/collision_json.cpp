@@ -7,7 +7,6 @@
 
 #include "io/json/json_text.hpp"
 #include "io/results/collision_columns.hpp"
-#include "io/results/collision_words.hpp"
 
 namespace octopair::io {
 
@@ -74,14 +73,14 @@ void read_json(const JsonPlace& from, std::optional<Word>& value) {
 }
 void read_json(const JsonPlace& from, std::optional<NearestPoints>& value) {
     const std::string place = from.row.place_of(from.key);
-    const auto& points = json_array(from.row.need(from.key), place);
+    const auto& points = json_array(from.row.required(from.key), place);
     if (points.size() != 2) from.row.refuse_key(from.key, "not two points");
     value = {json_point(points[0], place), json_point(points[1], place)};
 }
 void read_json(const JsonPlace& from, std::optional<std::vector<Contact>>& value) {
     const std::string place = from.row.place_of(from.key);
     value.emplace();
-    for (const auto& contact : json_array(from.row.need(from.key), place)) {
+    for (const auto& contact : json_array(from.row.required(from.key), place)) {
         value->push_back(contact_of(contact, place));
     }
 }

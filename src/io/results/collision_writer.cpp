@@ -84,7 +84,7 @@ private:
 
     std::unique_ptr<OutputStream> out_;
     CollisionForm form_;
-    std::vector<bool> shown_;  // by column of for_each_csv_column()
+    std::vector<bool> shown_;  // for each column of for_each_csv_column()
 };
 
 }  // namespace

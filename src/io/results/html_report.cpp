@@ -11,7 +11,6 @@
 #include "io/json/json_fields.hpp"
 #include "io/json/json_text.hpp"
 #include "io/results/collision_columns.hpp"
-#include "io/results/report_page.hpp"
 
 namespace octopair::io {
 

@@ -4,7 +4,7 @@
 //   viewer is in place of the drawings, if the build has the viewer.
 // - The page is in the folder report_page. The data are JSON in <script> elements. "<" is always escaped, so a name is always text.
 // - The page has at most `max_rows` rows: the worst ones, and of equal ones the first. Others are counted. The page says so.
-//   A duplicate is worst, then depth counts, then distance.
+//   Duplicates come first, then pairs by depth, then pairs by distance.
 // - Rows are kept in memory until finish(): at most 2 * max_rows.
 // - At most `max_others` objects without a row are drawn. The page says so.
 #pragma once
@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/results/collision_writer.hpp"
 #include "octopair/objects.hpp"
 
@@ -32,6 +32,9 @@ struct ReportScene {
     bool join = false;
     SceneSpace space = {};  ///< axes and unit of the coordinates; if the axis is unknown, z is up
 };
+
+/// The page of the folder report_page, with its style and its scripts. HtmlReport replaces the mark "@DATA@" with the data of a report.
+extern const std::string_view report_page;
 
 class TextNumbers;
 

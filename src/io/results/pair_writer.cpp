@@ -1,6 +1,8 @@
 #include "io/results/pair_writer.hpp"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <filesystem>
 #include <optional>
 
@@ -8,12 +10,14 @@
 
 #include "io/boxes/npy_header.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/results/pair_rows.hpp"
+#include "io/json/json_text.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
 
 namespace {
+
+char* put_number(char* at, std::uint32_t number) { return std::to_chars(at, at + 10, number).ptr; }
 
 class NpyWriter final : public PairWriter {
 public:
@@ -95,6 +99,41 @@ private:
 
 }  // namespace
 
+void write_csv_rows(OutputStream& out, std::string_view begin, std::span<const Pair> pairs) {
+    for (const Pair pair : pairs) {
+        char* const row = out.room(begin.size() + 32);
+        char* at = put_number(std::copy(begin.begin(), begin.end(), row), pair.a);
+        *at++ = ',';
+        at = put_number(at, pair.b);
+        *at++ = '\n';
+        out.advance(std::size_t(at - row));
+    }
+}
+
+void JsonlRows::write(OutputStream& out, std::string_view begin, std::span<const Pair> pairs) {
+    for (const Pair pair : pairs) {
+        line_ = '{';
+        line_ += begin;
+        append_number("\"a\":", pair.a);
+        append_number(",\"b\":", pair.b);
+        append_name("a_name", names_.a, pair.a);
+        append_name("b_name", names_.b, pair.b);
+        line_ += "}\n";
+        out.write(line_);
+    }
+}
+
+void JsonlRows::append_name(std::string_view key, const std::vector<std::string>* names, std::uint32_t object) {
+    if (names == nullptr || names->empty() || (*names)[object].empty()) return;
+    line_ += fmt::format(",\"{}\":{}", key, json_string((*names)[object]));
+}
+
+void JsonlRows::append_number(std::string_view before, std::uint32_t number) {
+    char digits[10];
+    line_ += before;
+    line_.append(digits, put_number(digits, number));
+}
+
 std::string frame_path(const std::string& path, std::uint64_t frame) {
     const std::size_t dot = path.rfind('.');
     return fmt::format("{}.{:06}{}", path.substr(0, dot), frame, dot == std::string::npos ? "" : path.substr(dot));
@@ -122,6 +161,28 @@ std::unique_ptr<PairWriter> make_file_writer(const std::string& path, bool movin
             return make_jsonl_writer(std::make_unique<AtomicFile>(path), moving, names);
     }
     throw Error(ErrorCode::usage, "unknown pair format");
+}
+
+ResultFormat event_format(const std::string& path) {
+    const ResultFormat format = result_format(path);
+    if (format != ResultFormat::npy) return format;
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: events are rows of text; the name of their file must end in .csv or .jsonl", path));
+}
+
+EventWriter::EventWriter(ResultFormat format, std::unique_ptr<OutputStream> out, const PairNames& names)
+    : format_(format), out_(std::move(out)), jsonl_(names) {
+    if (format_ == ResultFormat::npy) throw Error(ErrorCode::usage, "events are rows of text, not an array");
+    if (format_ == ResultFormat::csv) out_->write("frame,event,a,b\n");
+}
+
+void EventWriter::write(std::uint64_t frame, Event event, std::span<const Pair> pairs) {
+    const std::string_view word = event == Event::begin ? "begin" : "end";
+    if (format_ == ResultFormat::csv) {
+        write_csv_rows(*out_, fmt::format("{},{},", frame, word), pairs);
+    } else {
+        jsonl_.write(*out_, fmt::format("\"frame\":{},\"event\":\"{}\",", frame, word), pairs);
+    }
 }
 
 }  // namespace octopair::io

@@ -12,7 +12,7 @@
 #include "io/boxes/npy_header.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/results/collision_columns.hpp"
 #include "octopair/error.hpp"
@@ -67,10 +67,10 @@ bool is_result_header(std::string_view line) {
     return has("a") && has("b");
 }
 
-ResultRow::Event event_of(std::string_view word, const std::string& place) {
-    if (word.empty()) return ResultRow::Event::none;
-    if (word == "begin") return ResultRow::Event::begin;
-    if (word == "end") return ResultRow::Event::end;
+std::optional<Event> event_of(std::string_view word, const std::string& place) {
+    if (word.empty()) return std::nullopt;
+    if (word == "begin") return Event::begin;
+    if (word == "end") return Event::end;
     refuse(place, fmt::format("event '{}': neither begin nor end", shown_text(word)));
 }
 

@@ -1,4 +1,5 @@
-#include "io/results/result_frames.hpp"
+// ResultFrames.
+#include "io/results/result_file.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -14,7 +15,7 @@ void ResultFrames::add(ResultRow row) {
     }
     rows_.push_back({row.pair, row.frame, finding, row.event});
     frames_ = std::max(frames_, row.frame + 1);
-    if (row.event != ResultRow::Event::none) ++events_;
+    if (row.event) ++events_;
 }
 
 bool ResultFrames::finish() {
@@ -36,10 +37,10 @@ void ResultFrames::pair_up_events() {
     bool open = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const Entry& row = rows_[i];
-        if (row.event == ResultRow::Event::begin && !open) {
+        if (row.event == Event::begin && !open) {
             lifetimes_.push_back({row.pair, row.frame, no_end, row.finding});
             open = true;
-        } else if (row.event == ResultRow::Event::end && open) {
+        } else if (row.event == Event::end && open) {
             lifetimes_.back().end = row.frame;
             open = false;
         }

@@ -4,7 +4,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <tuple>
 
-#include "geometry/dyadic_grid.hpp"
+#include "geometry/exact_integer.hpp"
 #include "narrow_phase/exact/orientation.hpp"
 
 namespace octopair {

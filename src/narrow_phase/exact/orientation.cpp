@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cstddef>
 
-#include "geometry/dyadic_grid.hpp"
+#include "geometry/exact_integer.hpp"
 
 namespace octopair {
 namespace {

@@ -1,11 +1,11 @@
 // Orientation predicates: on which side of a plane or line a point lies. Exact for all finite float64 coordinates.
-// geometry/line_side.hpp describes how the signs are computed.
+// geometry/exact_sign.hpp describes how the signs are computed.
 #pragma once
 
 #include <array>
 #include <cmath>
 
-#include "geometry/line_side.hpp"
+#include "geometry/exact_sign.hpp"
 #include "octopair/pose.hpp"
 
 namespace octopair {

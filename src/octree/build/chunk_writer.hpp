@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/prefetch.hpp"
+#include "base/memory.hpp"
 #include "octree/build/chunk_lists.hpp"
 
 namespace octopair {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "base/prefetch.hpp"
+#include "base/memory.hpp"
 #include "base/tuning.hpp"
 
 namespace octopair {

@@ -1,6 +1,6 @@
 #include "octree/sweep/entry_list.hpp"
 
-#include "base/prefetch.hpp"
+#include "base/memory.hpp"
 
 namespace octopair {
 

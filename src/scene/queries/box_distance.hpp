@@ -3,7 +3,7 @@
 // Invariants
 //   - Comparisons treat each float64 as an exact real number: differences are not rounded, nothing overflows or underflows.
 //   - A comparison is computed in float64 first, with an error bound. If that cannot decide, integers of sufficient width do
-//     (geometry/square_sum.hpp).
+//     (geometry/exact_sign.hpp).
 //   - distance() is monotone: if compare_distances() says that `a` is nearer than `b`, distance() of `a` is not larger.
 //
 // Requires: rounding to nearest, with subnormal numbers.
@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/square_sum.hpp"
+#include "geometry/exact_sign.hpp"
 #include "octopair/queries.hpp"
 
 namespace octopair {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <exception>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

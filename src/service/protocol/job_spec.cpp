@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "service/protocol/limit_error.hpp"
 #include "service/protocol/octopair.pb.h"
 

@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "base/descriptor.hpp"
-#include "base/io_failure.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::service {

@@ -259,8 +259,8 @@ public:
 
 private:
     struct Material {
-        std::string name;                          // of an IfcMaterial
-        std::vector<std::string_view> references;  // of a layer, a set or a list
+        std::string name;                          // name of an IfcMaterial
+        std::vector<std::string_view> references;  // numbers of the instances in a layer, a set or a list
     };
 
     struct Product {
@@ -355,7 +355,7 @@ private:
     IfcText text_;
     std::vector<Product> products_;
     std::unordered_map<std::string_view, std::vector<std::string_view>> definitions_;  // representations, by number
-    std::unordered_set<std::string_view> body_representations_;                        // by number
+    std::unordered_set<std::string_view> body_representations_;                        // numbers of instances
     std::unordered_map<std::string_view, std::string_view> ids_;  // GlobalIds, by the numbers of instances
     std::unordered_map<std::string_view, Material> materials_;    // by the numbers of instances
     std::unordered_map<std::string_view, std::string>
@@ -373,7 +373,7 @@ std::optional<IfcElement> parse_ifc_element(std::string_view node_name) {
     if (node_name[name_end] != '_' || type_end > name_end) return std::nullopt;
     IfcElement element{node_name.substr(0, type_end), {}, node_name.substr(name_end + 1)};
     if (type_end < name_end) element.name = node_name.substr(type_end + 1, name_end - type_end - 1);
-    if (element.name == "Unnamed") element.name = {};  // by Assimp
+    if (element.name == "Unnamed") element.name = {};  // Assimp writes this name for elements without one
     return element;
 }
 

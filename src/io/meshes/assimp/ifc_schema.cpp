@@ -9,7 +9,8 @@
 
 #include "base/memory.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/files/letter_case.hpp"
+#include "io/formats/format_choice.hpp"
 
 namespace octopair::io {
 
@@ -54,12 +55,6 @@ std::uint64_t count_type(std::string_view step, const std::string& upper) {
     return count;
 }
 
-std::string upper_case(std::string_view text) {
-    std::string upper(text);
-    for (char& c : upper) c = c >= 'a' && c <= 'z' ? char(c - 32) : c;
-    return upper;
-}
-
 std::string read_step(const std::string& path) {
     const InputFile file(path);
     std::string text(std::size_t(file.size()), '\0');
@@ -82,7 +77,7 @@ std::string ifc_schema(std::string_view step) {
 std::string types_beyond_ifc2x3(std::string_view step) {
     std::string types;
     for (const std::string_view type : new_types) {
-        const std::uint64_t count = count_type(step, upper_case(type) + "(");
+        const std::uint64_t count = count_type(step, in_upper_case(type) + "(");
         if (count > 0) types += fmt::format("{}{} {}", types.empty() ? "" : ", ", count, type);
     }
     return types;
@@ -96,7 +91,7 @@ std::string ifc_remedy(const std::string& path) {
             "the file is {} and has {}; Assimp knows only the types of IFC2x3. Export the model as IFC2x3, glTF or OBJ",
             schema.empty() ? "IFC" : schema, types);
     }
-    if (upper_case(schema) == "IFC2X3") return "export the model anew as IFC2x3, or as glTF or OBJ";
+    if (in_upper_case(schema) == "IFC2X3") return "export the model anew as IFC2x3, or as glTF or OBJ";
     return fmt::format("the file is {}, and Assimp knows only IFC2x3. Export the model as IFC2x3, glTF or OBJ", schema);
 }
 

@@ -29,14 +29,14 @@ using IfcTexts = std::unordered_map<std::string, std::string>;
 
 /// Facts that the text of an IFC file has and Assimp does not pass on.
 struct IfcText {
-    IfcTexts names;      ///< of elements that have one
+    IfcTexts names;      ///< names of the elements that have one
     IfcTexts materials;  ///< names of the materials that are associated with an element, joined by ", "
     /// Types of the elements that have a body: a representation other than an axis, a footprint and the like. Without openings, spaces and
     /// grids, which Assimp leaves out.
     IfcTexts bodies;
     std::map<std::string, std::uint64_t> left_out;  ///< number of elements with a shape that Assimp leaves out, by type
-    double largest_coordinate = 0;                  ///< of all points, without its sign, in the unit of the file
-    bool complete = false;                          ///< false: the text ends before the end of a STEP file
+    double largest_coordinate = 0;  ///< largest absolute coordinate of all points, in the unit of the file
+    bool complete = false;          ///< false: the text ends before the end of a STEP file
 };
 
 /// Reads a STEP text. An element is an instance whose first attribute is a text of 22 characters; its name is the third attribute. Text

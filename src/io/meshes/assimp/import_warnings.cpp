@@ -19,7 +19,7 @@ namespace octopair::io {
 
 namespace {
 
-/// Returns the warning that octopair does not vouch for a format, or an empty text.
+/// Returns the warning that octopair does not check what Assimp reads of a format, or an empty text.
 std::string unchecked_format(const MeshFile& file) {
     const FileFormat* const format = file.known().format;
     if (format != nullptr && format->reader == FormatReader::checked_assimp) return {};

@@ -14,8 +14,8 @@
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
 #include "io/formats/content_marks.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 #include "io/meshes/faces/face_cutter.hpp"
 
@@ -190,8 +190,8 @@ void MeshFile::cut_faces() {
             for (const aiFace& face : faces) {
                 places.clear();
                 for (const unsigned index : std::span(face.mIndices, face.mNumIndices)) {
-                    for (const double at : places.emplace_back(vertex(mesh(number), index))) {
-                        if (!std::isfinite(at)) refuse_vertex(instance, index, at);
+                    for (const double coordinate : places.emplace_back(vertex(mesh(number), index))) {
+                        if (!std::isfinite(coordinate)) refuse_vertex(instance, index, coordinate);
                     }
                 }
                 if (!cutter.cut(places)) crossing_faces_.add(std::uint64_t(&face - faces.data()), instance.name);
@@ -208,7 +208,8 @@ double MeshFile::largest_rounded() const {
         double vertex_size = 0;
         for (const unsigned number : instance.meshes()) {
             for (const unsigned index : used_vertices(number)) {
-                for (const double at : vertex(mesh(number), index)) vertex_size = std::max(vertex_size, std::abs(at));
+                for (const double coordinate : vertex(mesh(number), index))
+                    vertex_size = std::max(vertex_size, std::abs(coordinate));
             }
         }
         largest = std::max(largest, instance.translations + instance.pose.largest_scale() * vertex_size);

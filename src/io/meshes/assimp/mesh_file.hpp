@@ -17,7 +17,7 @@
 
 #include "base/memory.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/meshes/assimp/content/mesh_content.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 #include "io/meshes/bounded_pose.hpp"

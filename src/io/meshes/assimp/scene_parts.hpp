@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "io/loaded_shapes.hpp"
+#include "io/loaded_scene.hpp"
 #include "io/meshes/assimp/mesh_file.hpp"
 #include "io/object_details.hpp"
 
@@ -43,7 +43,7 @@ LoadedTriangles triangles_of(const MeshFile& file);
 /// Throws: Error{bad_input} for a vertex that is not finite; Error{resource_limit} as shapes_of() does.
 shape::Mesh whole_mesh_of(const MeshFile& file);
 
-/// Returns warnings about the file, each a line "FILE: ...": that octopair does not vouch for the format, and what was not read.
+/// Returns warnings about the file, each a line "FILE: ...": that octopair does not check the format, and what was not read.
 std::vector<std::string> import_warnings(const MeshFile& file);
 
 /// Returns what was not read, for LoadedScene::not_read.

@@ -1,4 +1,5 @@
-#include "io/meshes/faces/monotone_pieces.hpp"
+// MonotonePieces: triangles of a sweep.
+#include "io/meshes/faces/outline_sweep.hpp"
 
 namespace octopair::io {
 
@@ -60,7 +61,7 @@ void MonotonePieces::close(const Gap& gap, std::uint32_t node) {
 MonotonePieces::Gap MonotonePieces::extend(const Gap& gap, std::uint32_t node, Side side) {
     std::uint32_t left = gap.lower;
     if (gap.upper != none) {
-        // The piece beside the edge that ended is closed: its other side is an edge from its last node to this one.
+        // The piece next to the edge that ended is closed: its other side is an edge from its last node to this one.
         close_piece(side == Side::lower ? gap.lower : gap.upper, node);
         if (side == Side::lower) left = gap.upper;
     }

@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include "io/meshes/faces/monotone_pieces.hpp"
 #include "io/meshes/faces/plane_outline.hpp"
 
 namespace octopair::io {
@@ -257,8 +256,8 @@ private:
 
     const PlaneOutline& outline_;
     OutlineNodes nodes_;
-    const PlaneOutline plane_;  // of nodes
-    Triangles inside_;          // of nodes
+    const PlaneOutline plane_;  // outline through the nodes
+    Triangles inside_;          // triangles between nodes
     MonotonePieces pieces_;
     Line line_;
     std::vector<Bundle> bundles_;

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "geometry/line_side.hpp"
+#include "geometry/exact_sign.hpp"
 
 namespace octopair::io {
 

@@ -1,4 +1,4 @@
-#include "io/meshes/gltf/extensions.hpp"
+// Extensions of glTF: which ones a file may require.
 
 #include <algorithm>
 #include <array>
@@ -73,7 +73,7 @@ bool is_only_compressed(const GltfFile& file, const JsonFields& primitive) {
         return fields.find(key) != nullptr &&
                file.item("accessors", whole_number(fields, key)).find("bufferView") == nullptr;
     };
-    const JsonFields attributes(primitive.need("attributes"), primitive.place_of("attributes"));
+    const JsonFields attributes(primitive.required("attributes"), primitive.place_of("attributes"));
     return lacks_data(attributes, "POSITION") || lacks_data(primitive, "indices");
 }
 

@@ -19,7 +19,7 @@ std::uint64_t whole_number(const json& value, const std::string& place) {
 }
 
 std::uint64_t whole_number(const JsonFields& fields, std::string_view key) {
-    return whole_number(fields.need(key), fields.place_of(key));
+    return whole_number(fields.required(key), fields.place_of(key));
 }
 
 std::uint64_t whole_number_or(const JsonFields& fields, std::string_view key, std::uint64_t absent) {

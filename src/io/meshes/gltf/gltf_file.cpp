@@ -15,7 +15,7 @@
 #include "io/files/letter_case.hpp"
 #include "io/json/json_text.hpp"
 #include "io/meshes/gltf/fields.hpp"
-#include "io/meshes/gltf/uri.hpp"
+#include "io/meshes/uri.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io::gltf {
@@ -62,7 +62,7 @@ json parsed(std::string_view text, const std::string& path, const std::stop_toke
 
 /// Returns a version of the object "asset"; empty if it is absent.
 std::string version_of(const JsonFields& root, std::string_view key) {
-    const JsonFields asset(root.need("asset"), root.place_of("asset"));
+    const JsonFields asset(root.required("asset"), root.place_of("asset"));
     const json* const version = asset.find(key);
     if (version == nullptr) return {};
     // Some exporters write 2.0 as a number.
@@ -74,7 +74,7 @@ std::string version_of(const JsonFields& root, std::string_view key) {
 void check_least_version(const JsonFields& root) {
     const std::string least = version_of(root, "minVersion");
     if (least.empty() || least.starts_with("2.0") || least.starts_with("1.")) return;
-    const JsonFields asset(root.need("asset"), root.place_of("asset"));
+    const JsonFields asset(root.required("asset"), root.place_of("asset"));
     asset.refuse_key("minVersion",
                      fmt::format("the file needs a reader of glTF {}; octopair reads glTF 2.0, so write the "
                                  "file as glTF 2.0",
@@ -144,7 +144,7 @@ void GltfFile::split_glb() {
 
 void GltfFile::parse(std::span<const std::byte> text) {
     root_ = parsed(text_of(text), path(), stop());
-    (void)JsonFields(fields().need("asset"), fields().place_of("asset")).need("version");
+    (void)JsonFields(fields().required("asset"), fields().place_of("asset")).required("version");
     version_ = version_of(fields(), "version");
     check_least_version(fields());
 }

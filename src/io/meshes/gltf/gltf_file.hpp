@@ -5,6 +5,13 @@
 //   of another file is relative to the folder of the glTF file. URIs with a scheme, such as http, and absolute names are refused.
 //
 // Source: Khronos, glTF 2.0 specification, sections 3 (JSON, buffers) and 4 (GLB).
+//
+// Extensions: which ones a file may require.
+//
+//   geometry     KHR_mesh_quantization, EXT_mesh_gpu_instancing: read.
+//   no geometry  materials, textures, lights, metadata: accepted and not read.
+//   by Assimp    KHR_draco_mesh_compression: Assimp reads the file.
+//   others       refused by name, because the geometry may be in the extension.
 #pragma once
 
 #include <cstddef>
@@ -73,14 +80,27 @@ private:
 
     ReadBudget budget_;
     Buffer<std::byte> content_;
-    std::span<const std::byte> binary_chunk_;  // of a GLB file
+    std::span<const std::byte> binary_chunk_;  // chunk of buffers of a GLB file
     nlohmann::json root_;
     std::string version_;
-    std::map<std::uint64_t, Buffer<std::byte>> buffers_;  // those that are not in the chunk
+    std::map<std::uint64_t, Buffer<std::byte>> buffers_;  // buffers that are not in the chunk
 };
 
 /// Returns whether a file may need Assimp: it is of glTF 1.0, or has meshes that are compressed with Draco. Looks at the text only, so
 /// it may also be true for other files. Returns false if the file cannot be read.
 bool may_need_assimp(const std::string& path);
+
+/// Name of the extension that places many copies of a node.
+inline constexpr const char* instancing = "EXT_mesh_gpu_instancing";
+
+/// Name of the extension that says which nodes are shown.
+inline constexpr const char* visibility = "KHR_node_visibility";
+
+/// Throws: Error{bad_input} that names an extension that the file requires, and that octopair does not read.
+void check_required_extensions(const GltfFile& file);
+
+/// Returns whether Assimp must read a file: it has compressed meshes without a copy that is not compressed.
+/// Throws: Error{bad_input} if such a file also uses extensions that Assimp ignores.
+bool needs_assimp(const GltfFile& file);
 
 }  // namespace octopair::io::gltf

@@ -87,7 +87,7 @@ std::pair<std::uint32_t, bool> MeshDecoder::VertexNumbers::number_of(std::uint64
 
 GltfMesh MeshDecoder::decode(std::uint64_t number, std::string_view node) {
     const JsonFields fields = file_.item("meshes", number);
-    const auto& primitives = json_array(fields.need("primitives"), fields.place_of("primitives"));
+    const auto& primitives = json_array(fields.required("primitives"), fields.place_of("primitives"));
     GltfMesh mesh;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const std::string place = fmt::format("{}.primitives[{}]", fields.place(), i);
@@ -95,7 +95,7 @@ GltfMesh MeshDecoder::decode(std::uint64_t number, std::string_view node) {
     }
     for (const auto* const vertices : {&mesh.shared.triangles.vertices, &mesh.shared.loose}) {
         for (const Point3d& vertex : *vertices) {
-            for (const double at : vertex) mesh.largest = std::max(mesh.largest, std::abs(at));
+            for (const double coordinate : vertex) mesh.largest = std::max(mesh.largest, std::abs(coordinate));
         }
     }
     return mesh;
@@ -103,7 +103,7 @@ GltfMesh MeshDecoder::decode(std::uint64_t number, std::string_view node) {
 
 void MeshDecoder::add_primitive(const JsonFields& fields, std::string_view node, GltfMesh& mesh) {
     const Mode mode = mode_of(fields);
-    const JsonFields attributes(fields.need("attributes"), fields.place_of("attributes"));
+    const JsonFields attributes(fields.required("attributes"), fields.place_of("attributes"));
     if (attributes.find("POSITION") == nullptr) return;
     Primitive primitive{node, fields.place().substr(file_.path().size() + 2),
                         Accessor(file_, whole_number(attributes, "POSITION"), 3), std::nullopt};
@@ -168,8 +168,8 @@ std::vector<std::uint32_t> MeshDecoder::add_vertices(const Primitive& primitive,
         if (!is_new) continue;
         if (to.size() == most) throw Error(ErrorCode::resource_limit, "a mesh has more than 2^32 - 1 vertices");
         to.push_back(positions.at<3>(vertex));
-        for (const double at : to.back()) {
-            if (!std::isfinite(at)) refuse_vertex(file_.path(), primitive.node, vertex, at);
+        for (const double coordinate : to.back()) {
+            if (!std::isfinite(coordinate)) refuse_vertex(file_.path(), primitive.node, vertex, coordinate);
         }
     }
     return numbers;

@@ -26,7 +26,7 @@ struct GltfMesh {
     bool has_targets = false;         ///< true if it has morph targets
     std::size_t incomplete = 0;       ///< number of primitives whose last vertices make no complete face
     std::size_t without_surface = 0;  ///< number of primitives that are points or lines
-    std::string first_incomplete;     ///< what is wrong with the first of them, without the file
+    std::string first_incomplete;     ///< message about the first of them, without the file
 };
 
 /// Decodes meshes of one file. Keeps working memory from mesh to mesh.

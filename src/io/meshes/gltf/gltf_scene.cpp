@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "io/files/failure.hpp"
-#include "io/meshes/gltf/extensions.hpp"
 #include "io/meshes/gltf/fields.hpp"
 #include "io/meshes/gltf/gltf_file.hpp"
 #include "io/meshes/gltf/gltf_mesh.hpp"

@@ -12,8 +12,8 @@
 #include "io/files/failure.hpp"
 #include "io/json/json_fields.hpp"
 #include "io/meshes/gltf/accessor.hpp"
-#include "io/meshes/gltf/extensions.hpp"
 #include "io/meshes/gltf/fields.hpp"
+#include "io/meshes/gltf/gltf_file.hpp"
 #include "octopair/pose.hpp"
 
 namespace octopair::io::gltf {
@@ -35,7 +35,7 @@ struct Placement {
 Pose matrix_of(const JsonFields& node) {
     const auto numbers = numbers_or<16>(node, "matrix", {});
     constexpr std::array<double, 4> last_row = {0, 0, 0, 1};
-    constexpr double rounding = 1e-5;  // of exporters that compute in float32
+    constexpr double rounding = 1e-5;  // rounding error of exporters that compute in float32
     Pose pose;
     for (std::size_t column = 0; column < 4; ++column) {
         if (!(std::abs(numbers[4 * column + 3] - last_row[column]) <= rounding))
@@ -252,7 +252,7 @@ void NodeTree::add(const Waiting& waiting, std::vector<Waiting>& stack) {
 void NodeTree::add_copies(const JsonFields& fields, std::size_t node, std::uint64_t mesh, const json& extension) {
     const std::string place = fmt::format("{}: {}", fields.place(), instancing);
     const JsonFields own(extension, place);
-    const json& object = own.need("attributes");
+    const json& object = own.required("attributes");
     const Copies copies = copies_in(file_, JsonFields(object, own.place_of("attributes")), object);
     const Node& from = nodes_[node];
     const double scale = from.pose.largest_scale();

@@ -176,10 +176,7 @@ private:
     }
 
     ObjKeyword keyword_of(std::string_view word) const {
-        if (!capitals_) return obj_keyword(word);
-        std::string small(word);
-        for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-        return obj_keyword(small);
+        return capitals_ ? obj_keyword(in_lower_case(word)) : obj_keyword(word);
     }
 
     void read_vertex() {
@@ -289,7 +286,7 @@ private:
     bool capitals_;  // true if keywords may be capitals
     std::vector<Point3d> vertices_;
     std::vector<ObjPart> parts_;
-    std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // of parts, by object and group
+    std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // indices of parts, by object and group
     std::size_t current_ = 0;                                             // part that faces are added to
     std::string object_, group_, material_;
     bool material_is_new_ = false;     // true if the current mesh may lack the material

@@ -69,10 +69,10 @@ struct OffContent {
     PlainMesh mesh;
     OffKeyword keyword;
     std::uint64_t vertices = 0, faces = 0;
-    bool edges_are_open = false;    ///< the line ends after the number of faces
-    bool is_uniform = true;         ///< as many words follow each vertex, and a face has a colour or nothing after it
-    bool is_stated = true;          ///< as many words follow vertices as the keyword states
-    bool is_bare = true;            ///< no words follow vertices
+    bool edges_are_open = false;  ///< the line ends after the number of faces
+    bool is_uniform = true;  ///< all vertices have the same number of words; after a face comes a colour or nothing
+    bool is_stated = true;   ///< vertices have the number of words that the keyword states
+    bool is_bare = true;     ///< no words follow vertices
     std::uint64_t unread_line = 0;  ///< first line after the last face; 0: none
     std::uint64_t last_line = 0;    ///< number of the last line that was read
     std::optional<Error> error;     ///< why the file is invalid in this layout
@@ -113,7 +113,7 @@ private:
 
     /// Reads the keyword, which may be missing. Goes to the counts.
     void read_keyword() {
-        lines_.need("the header");
+        lines_.require_line("the header");
         const std::string_view word = lines_.peek();
         if (is_digits(word)) return;
         content_.keyword = keyword_of(word);
@@ -189,7 +189,7 @@ private:
 
     /// Goes to the next vertex or face.
     void begin(std::string_view what) {
-        if (layout_.by_lines) return lines_.need(what);
+        if (layout_.by_lines) return lines_.require_line(what);
         lines_.find_word(what);
         constexpr std::uint64_t elements_between_checks = 4096;
         if (++elements_ % elements_between_checks == 0) lines_.checkpoint();

@@ -34,7 +34,7 @@ public:
 private:
     const PlainMesh& mesh_;
     FaceCutter cutter_;
-    std::vector<Point3d> places_;  // of the corners of a face
+    std::vector<Point3d> places_;  // places of the corners of a face
 };
 
 }  // namespace

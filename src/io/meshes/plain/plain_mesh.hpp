@@ -1,4 +1,5 @@
-// Readers of simple mesh formats, with the precision of the file: text is read as float64, to the nearest number.
+// Readers of simple mesh formats, and scenes of their files: one object for each mesh of the file, or for each triangle. Numbers have the
+// precision of the file: text is read as float64, to the nearest number.
 //
 //   off   OFF with any of ST, C and N before it, with three coordinates, as text
 //   obj   polygons of objects and groups
@@ -16,7 +17,9 @@
 #include <string_view>
 #include <vector>
 
+#include "io/loaded_scene.hpp"
 #include "io/meshes/faces/face_cutter.hpp"
+#include "io/scene_reader.hpp"
 #include "octopair/shapes.hpp"
 
 namespace octopair::io {
@@ -60,5 +63,17 @@ std::vector<PlainMesh> parse_obj(const FileContent& file);
 PlainMesh parse_off(const FileContent& file);
 std::vector<PlainMesh> parse_stl(const FileContent& file);
 PlainMesh parse_ply(const FileContent& file);
+
+/// Returns whether files with this ending have a simple format. Requires: `ending` is in lower case.
+bool is_plain_ending(std::string_view ending);
+
+/// Reads a file of a simple format. The name of an object is that of the file and, if the file has several meshes or names them, "/"
+/// and the name of the mesh or "#" and its position.
+/// Throws: what the parsers throw; Error{io_failed, resource_limit}.
+LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop);
+
+/// Reads all meshes of such a file as one, for a scene that names it. Adds the file's LoadedScene::largest_rounded and warnings to
+/// `scene`.
+shape::Mesh read_plain_mesh(const std::string& path, LoadedScene& scene, const std::stop_token& stop);
 
 }  // namespace octopair::io

@@ -1,4 +1,4 @@
-#include "io/meshes/plain/plain_scene.hpp"
+// Scenes of mesh files of simple formats.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 #include "io/meshes/placed_meshes.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
 
@@ -34,7 +34,7 @@ double largest_rounded(const std::vector<PlainMesh>& meshes) {
     for (const PlainMesh& mesh : meshes) {
         if (!mesh.rounded) continue;
         for (const Point3d& place : mesh.vertices) {
-            for (const double at : place) largest = std::max(largest, std::abs(at));
+            for (const double coordinate : place) largest = std::max(largest, std::abs(coordinate));
         }
     }
     return largest;
@@ -141,12 +141,12 @@ void add_shapes(std::vector<PlainMesh> meshes, const std::string& path, LoadedSc
 }
 
 /// Throws: Error{bad_input} if a coordinate is beyond the range of float32.
-float rounded(double at, const std::string& path) {
-    const auto value = float(at);
+float rounded(double coordinate, const std::string& path) {
+    const auto value = float(coordinate);
     if (!std::isfinite(value)) {
         refuse(path, fmt::format("the coordinate {} is beyond the range of float32, which boxes of triangles have; use "
                                  "--objects node",
-                                 number_text(at)));
+                                 number_text(coordinate)));
     }
     return value;
 }
@@ -165,7 +165,7 @@ LoadedTriangles triangles_of(std::vector<PlainMesh> meshes, const std::string& p
             loaded.triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
             loaded.owners.push_back(std::uint32_t(owner));
             for (const Point3d& corner : loaded.triangles.back()) {
-                for (const double at : corner) (void)rounded(at, path);
+                for (const double coordinate : corner) (void)rounded(coordinate, path);
             }
         }
     }

@@ -27,7 +27,7 @@ public:
     /// `by_lines`: each element has a line of its own, which may end early.
     TextValues(TextLines& lines, bool by_lines) : lines_(lines), by_lines_(by_lines) {}
     void begin_element() {
-        if (by_lines_) return lines_.need("an element");
+        if (by_lines_) return lines_.require_line("an element");
         constexpr std::uint64_t elements_between_checks = 4096;
         if (++elements_ % elements_between_checks == 0) lines_.checkpoint();
     }
@@ -217,8 +217,8 @@ private:
 /// Throws: Error{bad_input} if a face has a corner whose place is not known. Other vertices do not matter.
 void check_corners(const FileContent& file, const PlainMesh& mesh) {
     for (const std::uint32_t corner : mesh.corners) {
-        for (const double at : mesh.vertices[corner]) {
-            if (!std::isfinite(at))
+        for (const double coordinate : mesh.vertices[corner]) {
+            if (!std::isfinite(coordinate))
                 refuse(file.path,
                        fmt::format("vertex {}, which a face uses, has a coordinate that is not finite; repair the mesh",
                                    corner));

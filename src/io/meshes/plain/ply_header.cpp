@@ -59,13 +59,13 @@ PlyEncoding encoding_of(TextLines& lines) {
 }  // namespace
 
 PlyHeader read_ply_header(TextLines& lines) {
-    lines.need("'ply'");
+    lines.require_line("'ply'");
     if (lines.peek() != "ply")
         lines.refuse_line(fmt::format("a PLY file begins with 'ply', not '{}'", shown(lines.peek())));
     (void)lines.word();
     PlyHeader header;
     for (;;) {
-        lines.need("the rest of the header");
+        lines.require_line("the rest of the header");
         const std::string_view word = lines.word();
         if (word == "end_header") return header;
         if (word == "format") {

@@ -173,7 +173,7 @@ public:
         std::vector<PlainMesh> solids;
         while (follows_in_line_ || lines_.next()) {
             follows_in_line_ = false;
-            need(is(noted(lines_.word()), "solid"), "'solid'");
+            expect(is(noted(lines_.word()), "solid"), "'solid'");
             const std::string_view name = name_of_solid(lines_.rest());
             solids.emplace_back().name = name;
             lines_.skip(name.size());
@@ -192,7 +192,7 @@ private:
             constexpr std::string_view expected = "'facet' or 'endsolid'";
             const std::string_view word = statement(expected);
             if (is_end(word, "endsolid")) return;
-            need(is(word, "facet"), expected);
+            expect(is(word, "facet"), expected);
             if (mesh.vertices.size() > 0xFFFFFFFF - 3) lines_.refuse_line("a solid has more than 2^32 - 1 vertices");
             read_facet(mesh);
         }
@@ -211,9 +211,9 @@ private:
     void read_facet(PlainMesh& mesh) {
         if (++facets_ % 4096 == 0) lines_.checkpoint();
         skip_normal();
-        need(is(statement("'outer loop'"), "outer") && is(next_word("'loop'"), "loop"), "'outer loop'");
+        expect(is(statement("'outer loop'"), "outer") && is(next_word("'loop'"), "loop"), "'outer loop'");
         for (int corner = 0; corner < 3; ++corner) {
-            need(is(statement("'vertex'"), "vertex"), "'vertex'");
+            expect(is(statement("'vertex'"), "vertex"), "'vertex'");
             Point3d place;
             for (double& at : place) {
                 lines_.find_word("a coordinate");
@@ -222,8 +222,8 @@ private:
             add_corner(mesh, place);
         }
         mesh.end_face();
-        need(is_end(statement("'endloop'"), "endloop"), "'endloop'");
-        need(is_end(statement("'endfacet'"), "endfacet"), "'endfacet'");
+        expect(is_end(statement("'endloop'"), "endloop"), "'endloop'");
+        expect(is_end(statement("'endfacet'"), "endfacet"), "'endfacet'");
     }
 
     std::string_view next_word(std::string_view expected) {
@@ -253,13 +253,13 @@ private:
             if (is_at_begin) (void)lines_.skip_line();
         }
         for (;;) {
-            lines_.need(expected);
+            lines_.require_line(expected);
             const std::string_view word = lines_.word();
             if (!is_colour(word)) return noted(word);
         }
     }
 
-    /// Keeps a word for need(). Returns it.
+    /// Keeps a word for expect(). Returns it.
     std::string_view noted(std::string_view word) { return last_word_ = word; }
 
     /// Returns whether a statement is an end, such as "endloop" or "end loop".
@@ -267,7 +267,7 @@ private:
         return is(word, wanted) || (is(word, "end") && is(next_word(wanted), wanted.substr(3)));
     }
 
-    void need(bool holds, std::string_view expected) const {
+    void expect(bool holds, std::string_view expected) const {
         if (!holds) lines_.refuse_line(fmt::format("{} is expected, not '{}'", expected, shown(last_word_)));
     }
 

@@ -44,7 +44,7 @@ bool TextLines::next() {
     return false;
 }
 
-void TextLines::need(std::string_view what) {
+void TextLines::require_line(std::string_view what) {
     if (next()) return;
     refuse(file_.path, number_ == 0
                            ? fmt::format("has no text, but {} is needed", what)
@@ -60,7 +60,7 @@ std::uint64_t TextLines::skip_words() {
 
 void TextLines::find_distant_word(std::string_view what) {
     line_ = without_space_before(line_);
-    if (line_.empty()) need(what);
+    if (line_.empty()) require_line(what);
 }
 
 void TextLines::join_continued(char mark) {

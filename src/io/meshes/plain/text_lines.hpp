@@ -22,7 +22,7 @@ public:
     /// Goes to the next line that has a word. Returns false at the end of the text. Throws: Error{cancelled}.
     bool next();
     /// Like next(), but the end of the text is an error. `what`: what is expected, for the message.
-    void need(std::string_view what);
+    void require_line(std::string_view what);
     /// Joins the line with the lines after it, as long as it ends with `mark`, which becomes a space.
     void join_continued(char mark);
 

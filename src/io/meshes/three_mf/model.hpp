@@ -38,7 +38,7 @@ struct Reference {
     std::uint32_t object = 0;  ///< its identifier
     std::string part;          ///< name of the part of the object; empty: the same part
     Pose pose;
-    std::string part_number;  ///< of an item
+    std::string part_number;  ///< part number of an item
     std::uint64_t line = 0;
     ObjectPlace target;  ///< set by Model
 };
@@ -64,8 +64,8 @@ struct CountedNote {
 };
 
 struct ModelPart {
-    std::string name;     ///< of the part, for example "3D/3dmodel.model"
-    std::string version;  ///< of the namespace, for example "2015/02"; empty if the part has none
+    std::string name;     ///< name of the part, for example "3D/3dmodel.model"
+    std::string version;  ///< version of the namespace, for example "2015/02"; empty if the part has none
     std::string unit;     ///< as in the file, for example "millimeter"
     bool needs_slices = false;
     std::vector<ModelObject> objects;

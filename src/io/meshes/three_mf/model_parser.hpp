@@ -31,7 +31,7 @@ public:
     void end() override;
 
 private:
-    /// What the parser is in.
+    /// The element that the parser is in.
     enum class Place : std::uint8_t {
         document,
         model,
@@ -82,16 +82,16 @@ private:
     const PartReading reading_;
     XmlParser parser_;
     MeshBuilder mesh_;
-    Prefixes prefixes_;  // of the element <model>
+    Prefixes prefixes_;  // prefixes of the element <model>
     std::string core_;   // namespace of 3MF in this part
     std::vector<Place> places_ = {Place::document};
     std::uint64_t elements_ = 0;
-    std::optional<Property> own_property_;                                   // of the object
-    std::vector<std::set<Property>> properties_;                             // of each object
+    std::optional<Property> own_property_;                                   // property of the object
+    std::vector<std::set<Property>> properties_;                             // properties of each object
     std::unordered_map<std::uint32_t, std::vector<std::string>> materials_;  // groups of base materials, by identifier
-    std::unordered_map<std::uint32_t, std::uint64_t> lines_;                 // of each object and group of materials
-    std::set<std::uint32_t> other_groups_;                                   // groups of properties of extensions
-    std::vector<std::string>* group_ = nullptr;                              // group of the element <basematerials>
+    std::unordered_map<std::uint32_t, std::uint64_t> lines_;  // line of each object and group of materials
+    std::set<std::uint32_t> other_groups_;                    // groups of properties of extensions
+    std::vector<std::string>* group_ = nullptr;               // group of the element <basematerials>
     bool has_resources_ = false, has_build_ = false, has_vertices_ = false, has_triangles_ = false;
 };
 

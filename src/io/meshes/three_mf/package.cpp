@@ -8,8 +8,9 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/files/letter_case.hpp"
 #include "io/json/json_fields.hpp"
-#include "io/meshes/gltf/uri.hpp"
+#include "io/meshes/uri.hpp"
 #include "io/meshes/xml/xml_parser.hpp"
 
 namespace octopair::io::three_mf {
@@ -18,12 +19,6 @@ namespace {
 
 constexpr std::string_view relationships = "_rels/.rels";
 constexpr std::size_t several = ~std::size_t(0);  // parts have the same name
-
-std::string in_lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-    return lower;
-}
 
 Buffer<std::byte> package_bytes(const std::string& path, const std::stop_token& stop) {
     const InputFile file(path);
@@ -63,7 +58,7 @@ std::string part_name(std::string_view path) {
     std::vector<std::string> segments;
     while (!path.empty()) {
         const std::size_t end = std::min(path.find('/'), path.size());
-        std::string segment = gltf::percent_decoded(path.substr(0, end));
+        std::string segment = percent_decoded(path.substr(0, end));
         path.remove_prefix(std::min(end + 1, path.size()));
         if (segment == "..") {
             if (!segments.empty()) segments.pop_back();

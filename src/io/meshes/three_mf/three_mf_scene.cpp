@@ -35,7 +35,7 @@ constexpr std::uint64_t most_nodes = std::uint64_t(1) << 24;
 /// An item, or a component within it.
 struct BuildNode {
     const Reference* reference;
-    std::size_t part;    // of the reference
+    std::size_t part;    // part of the reference
     std::size_t parent;  // index of the node above, plus 1; 0 for an item
     std::string name;    // path
     std::string_view label, parent_label;

@@ -26,7 +26,7 @@ struct ZipEntry {
     std::uint16_t flags = 0, method = 0;
     std::uint32_t crc = 0;
     std::uint64_t packed_size = 0, size = 0;
-    std::uint64_t offset = 0;  ///< of the header before the content
+    std::uint64_t offset = 0;  ///< offset of the header before the content
     std::uint64_t end = 0;     ///< offset of what follows the content: the next entry, or the directory
 };
 

@@ -5,7 +5,7 @@
 //   DTD           allowed                                refused, so there are no entities but those of XML itself
 //   characters    reported                               left out
 //   memory        not limited                            at most 1 GiB for expat
-//   encoding      an unknown one is read as Latin-1      UTF-8, UTF-16, or another one that expat knows
+//   encoding      unknown ones are read as Latin-1       those of expat, such as UTF-8 and UTF-16
 //
 // - An exception of the handler stops the parser, and leaves the call that parses.
 // - The limit of memory is needed because an archive of a few megabytes can unpack to so many names or levels that they fill the memory.
@@ -93,7 +93,7 @@ private:
     XmlHandler& handler_;
     Mode mode_;
     std::unique_ptr<XML_ParserStruct, void (*)(XML_ParserStruct*)> parser_;
-    std::exception_ptr thrown_;  // by the handler
+    std::exception_ptr thrown_;  // exception of the handler
     std::string waiting_;        // text that is not parsed yet
     std::size_t batch_;          // bytes to collect before they are parsed
     std::uint64_t events_ = 0;   // calls of the handler for the last batch

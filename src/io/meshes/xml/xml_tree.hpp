@@ -84,7 +84,7 @@ private:
     std::vector<std::string> names_;
     std::vector<Element> elements_;
     std::vector<Attribute> attributes_;
-    std::string characters_;  // of texts and attributes
+    std::string characters_;  // texts of elements and values of attributes
 };
 
 /// Appends elements to an XML text.

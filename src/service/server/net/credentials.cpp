@@ -9,7 +9,7 @@
 
 #include <cerrno>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "service/protocol/certificate.hpp"
 #include "service/protocol/private_file.hpp"

@@ -20,7 +20,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::service {

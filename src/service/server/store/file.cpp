@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "service/server/jobs/job_record.hpp"
 

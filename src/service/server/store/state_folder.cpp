@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 #include "octopair/error.hpp"
 #include "service/server/log/event.hpp"
 #include "service/server/store/file.hpp"

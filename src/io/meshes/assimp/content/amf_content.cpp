@@ -1,5 +1,5 @@
 // The check of AMF files.
-#include "io/meshes/assimp/content/format_checks.hpp"
+#include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <cmath>
 #include <map>

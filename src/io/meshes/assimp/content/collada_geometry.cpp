@@ -264,7 +264,7 @@ std::size_t count_primitive_groups(const XmlElement& mesh) {
 }
 
 void write_collada_mesh(const XmlElement& mesh, XmlWriter& out) {
-    std::optional<std::size_t> source;  // of all groups so far
+    std::optional<std::size_t> source;  // the source of positions of all groups so far
     std::vector<double> positions;
     out.open("mesh");
     for (const XmlElement& group : mesh.children()) {

@@ -1,5 +1,5 @@
 // The check of DXF files.
-#include "io/meshes/assimp/content/format_checks.hpp"
+#include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
 #include <array>
@@ -246,7 +246,7 @@ private:
     const DxfFile& file_;
     DxfWriter out_;
     LeftOut left_out_;
-    double copies_ = 0;  // of blocks
+    double copies_ = 0;  // number of copies of blocks so far
 };
 
 }  // namespace

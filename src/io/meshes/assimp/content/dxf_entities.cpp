@@ -104,8 +104,8 @@ private:
     GroupReader reader_;
     DxfFile file_;
     std::string_view section_;
-    DxfEntity entity_;           // that is being read
-    DxfBlock* block_ = nullptr;  // that is being read
+    DxfEntity entity_;           // the entity that is being read
+    DxfBlock* block_ = nullptr;  // the block that is being read
 };
 
 DxfPoint cross_of(const DxfPoint& a, const DxfPoint& b) {

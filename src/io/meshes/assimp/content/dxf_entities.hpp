@@ -21,7 +21,7 @@ struct DxfGroup {
 class DxfEntity {
 public:
     std::string_view type;
-    std::size_t line = 0;  ///< of the type
+    std::size_t line = 0;  ///< line of the type
     std::vector<DxfGroup> groups;
 
     /// Returns the value of the first group with a code, or an empty text.

@@ -10,7 +10,6 @@
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/meshes/assimp/content/format_checks.hpp"
 #include "io/meshes/xml/xml_tree.hpp"
 
 namespace octopair::io {

@@ -1,16 +1,17 @@
-// MeshContent: the result of a check of a mesh file's text, before Assimp reads the file.
+// MeshContent: the result of a check of a mesh file's text, before Assimp reads the file. The checks of formats that Assimp 5.2 reads wrongly.
 // Start here to change what is done about faults of Assimp.
 //
 // A check of a format finds what Assimp reads wrongly. It writes the content in a form that Assimp reads rightly, refuses the file, or counts
-// what is left out.
+// what is left out. Below, each list has the faults of Assimp that a check finds or corrects.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 
 namespace octopair::io {
 
@@ -37,5 +38,90 @@ private:
 /// Checks the content of a file that Assimp is going to read.
 /// Throws: Error{bad_input} with the line if Assimp would read the file wrongly; Error{io_failed}.
 MeshContent check_mesh_content(const std::string& path, const KnownFormat& known);
+
+// Each check gets the content of a file. `path` is for messages. Throws: Error{bad_input} with the line, as check_mesh_content().
+
+/// Finds in an AC3D file what Assimp 5.2 reads wrongly, and moves lines to their places.
+///
+/// - A corner beyond the vertices becomes the first vertex. A surface with a material beyond the list is lost.
+/// - A line of data that begins with a keyword is read as the model.
+/// - The place of an object with surfaces does not move its children and its lines. A rotation turns it, too.
+MeshContent correct_ac3d(const std::string& path, std::string_view bytes);
+
+/// Writes an AMF file in a form that Assimp 5.2 reads rightly.
+///
+/// - Only the first volume of an object is read, and the last mesh.
+/// - A number ends at a comma. A vertex without coordinates is left out, so that all indices after it are wrong.
+/// - Objects without an id, or with one id, replace each other.
+/// - The angles of an instance are taken for a translation.
+///
+/// So all volumes of an object are written as one, in the vertices of one mesh. Colours, textures and materials are not written.
+MeshContent correct_amf(const std::string& path, std::string_view bytes);
+
+/// Writes a COLLADA file in a form that Assimp 5.2 reads rightly.
+///
+/// - <skew> is ignored. The axis of <rotate> must have the length 1, and the up of <lookat> must be perpendicular.
+/// - A comma in an index is an endless loop. Negative indices are read as 0.
+/// - A fan of triangles becomes one polygon. A primitive whose count is missing is empty. A strip with fewer than three corners crashes it.
+/// - Values of an accessor without the names X, Y and Z are all the first one.
+/// - <extra> in a primitive is refused. Texts end at the first comment.
+/// - Instances of nodes and geometries that are in other files, or missing, or within a node of a library, are lost.
+/// - If two instances of a geometry share some materials, later triangles of the second one get the vertices of other triangles.
+/// - White space around the name of the up axis makes it y.
+///
+/// So nodes replace their instances, transforms are written as numbers that Assimp understands, and meshes have only positions.
+MeshContent correct_collada(const std::string& path, std::string_view bytes);
+
+/// Finds in a DirectX file (.x) what Assimp 5.2 reads wrongly, and corrects it where the meaning is certain.
+///
+/// - A corner beyond the vertices is left out of its face. Faces with a material beyond the list are lost.
+/// - The object after a reference in braces is lost.
+/// - A comma between whole numbers of a matrix is a decimal point.
+/// - Meshes outside all frames are placed by the only frame, and replace its meshes.
+/// - An unnamed frame with a mesh is joined to its parent, and the frames in it are lost.
+///
+/// Binary and compressed files are not checked.
+MeshContent correct_directx(const std::string& path, std::string_view bytes);
+
+/// Writes a DXF file as faces and lines, which Assimp 5.2 reads rightly.
+///
+/// - A block is inserted without its rotation, rows, columns and direction of extrusion, and its position is scaled. Blocks in blocks are lost.
+/// - Entities after a text that begins with a brace, and after a POLYLINE without a VERTEX, are lost.
+/// - A corner of a polyface mesh is lost if the edge after it is invisible. Meshes of M x N points are lines. Every second edge of a line is lost.
+/// - Entities of the paper (layouts) are read as the model.
+///
+/// So blocks are replaced by their entities, polylines by faces or lines, and all other entities are left out. An object is a layer.
+MeshContent correct_dxf(const std::string& path, std::string_view bytes);
+
+/// Finds in an OpenGEX file what Assimp 5.2 reads wrongly or leaves out.
+///
+/// - Structures Node and BoneNode are left out, with all that is in them.
+/// - Translation, Rotation and Scale are ignored. Of several transforms of a node, the last one counts.
+/// - Of several index arrays of a mesh, the last one counts. Each face has its first three corners.
+/// - Hexadecimal indices are 0. Corners beyond the vertices are read from other memory.
+MeshContent check_opengex(const std::string& path, std::string_view bytes);
+
+/// Writes an X3D file in a form that Assimp 5.2 reads rightly.
+///
+/// - After an empty group, and after a group with USE, nodes are placed in the wrong group or lost.
+/// - A comma between numbers ends the number before it, and the number after it is lost.
+/// - The axis of a rotation must have the length 1.
+/// - A Cone is upside down. A Cylinder has 30 sides, so it is too narrow along z. Quads and TriangleStripSet are not known, nor groups such as Anchor.
+/// - Metadata counts as a child of a Switch.
+/// - An Extrusion along a straight spine ignores its direction. Its orientations turn around the axes of the world.
+/// - Indices beyond the points, and grids with too few heights, are read from other memory.
+///
+/// So uses are replaced by what they refer to, numbers are written with spaces between them, and only groups and geometry are written.
+MeshContent correct_x3d(const std::string& path, std::string_view bytes);
+
+/// Writes an XGL file in a form that Assimp 5.2 reads rightly.
+///
+/// - All transforms are ignored, and so are references to objects.
+/// - The comma after a whole number is a decimal point.
+///
+/// So each object gets meshes of its own, with vertices in their places, and without colours and normals.
+MeshContent correct_xgl(const std::string& path, std::string_view bytes);
+/// Like correct_xgl(), for a compressed file (.zgl).
+MeshContent correct_zgl(const std::string& path, std::string_view bytes);
 
 }  // namespace octopair::io

@@ -1,5 +1,5 @@
 // The check of X3D files.
-#include "io/meshes/assimp/content/format_checks.hpp"
+#include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
 #include <array>
@@ -208,7 +208,7 @@ private:
         end_group(before);
     }
 
-    /// Returns the first file beside this one that an Inline node names.
+    /// Returns the first file that an Inline node names and that exists.
     std::string file_of(const XmlElement& node) const {
         namespace fs = std::filesystem;
         std::string_view urls = node.attribute("url").value_or("");
@@ -226,7 +226,7 @@ private:
     const XmlTree& tree_;
     XmlWriter& out_;
     LeftOut& left_out_;
-    double radians_ = 1;  // of the file's unit of angles
+    double radians_ = 1;  // radians in the file's unit of angles
     std::map<std::string, std::vector<std::size_t>> definitions_;
     std::vector<std::size_t> open_;  // nodes that are being written
     std::size_t files_ = 0;          // how deep Inline nodes may be nested in this file

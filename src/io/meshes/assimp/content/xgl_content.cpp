@@ -1,5 +1,5 @@
 // The check of XGL files.
-#include "io/meshes/assimp/content/format_checks.hpp"
+#include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <zlib.h>
 
@@ -257,7 +257,7 @@ private:
     XmlWriter out_;
     LeftOut left_out_;
     std::map<std::string, std::size_t> meshes_, objects_;  // ID -> element
-    std::map<std::string, XglPoint> points_;               // of the mesh that is being written
+    std::map<std::string, XglPoint> points_;               // points of the mesh that is being written
     std::set<std::string, std::less<>> placed_;            // IDs of objects that references place
     std::vector<std::size_t> open_;                        // objects that are being written
 };

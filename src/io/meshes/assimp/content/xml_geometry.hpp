@@ -1,5 +1,5 @@
 // Writes the geometry of COLLADA and X3D files in a form that Assimp reads rightly: with nothing but positions, and with indices that were
-// checked (format_checks.hpp).
+// checked (mesh_content.hpp).
 #pragma once
 
 #include <functional>

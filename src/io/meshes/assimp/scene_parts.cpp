@@ -1,17 +1,89 @@
-// The shapes and triangles of a mesh file, for the narrow phase.
 #include "io/meshes/assimp/scene_parts.hpp"
 
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <set>
+#include <string>
 
+#include <assimp/material.h>
 #include <fmt/format.h>
 
+#include "io/formats/format_choice.hpp"
+#include "io/meshes/assimp/ifc_text.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
 
 namespace {
+
+std::string& text_of(DetailTexts& texts, Detail detail) { return texts[std::size_t(detail)]; }
+
+std::string_view name_of(const aiNode& node) { return {node.mName.C_Str(), node.mName.length}; }
+
+/// Returns whether a name was invented by Assimp, because the file gives none.
+bool is_invented(std::string_view material) {
+    return material.empty() || material == AI_DEFAULT_MATERIAL_NAME || material.starts_with("<IFCDefault");
+}
+
+std::set<std::string> materials_of(const MeshFile& file, const MeshInstance& instance) {
+    std::set<std::string> names;
+    for (const unsigned number : instance.meshes()) {
+        const unsigned material = file.mesh(number).mMaterialIndex;
+        if (material >= file.scene().mNumMaterials) continue;
+        const std::string name = file.scene().mMaterials[material]->GetName().C_Str();
+        if (!is_invented(name)) names.insert(name);
+    }
+    return names;
+}
+
+/// An element of an IFC model, and its node.
+struct ElementNode {
+    IfcElement element;
+    const aiNode* node;
+};
+
+/// Returns the nearest element at or above `node` for which `accept` is true.
+template <typename Accept>
+std::optional<ElementNode> nearest_element(const aiNode* node, const Accept& accept) {
+    for (; node != nullptr; node = node->mParent) {
+        const auto element = parse_ifc_element(name_of(*node));
+        if (element && accept(*element)) return ElementNode{*element, node};
+    }
+    return std::nullopt;
+}
+
+/// Returns the name of an element, or its type if it has none.
+std::string label_of(const IfcElement& element, const IfcTexts& names) {
+    const auto known = names.find(std::string(element.id));
+    if (known != names.end()) return known->second;
+    return std::string(element.name.empty() ? element.type : element.name);
+}
+
+void add_ifc_details(const aiNode& node, const IfcText& text, DetailTexts& texts) {
+    const IfcTexts& names = text.names;
+    const auto any = [](const IfcElement&) { return true; };
+    const auto own = nearest_element(&node, any);
+    if (!own) return;
+    text_of(texts, Detail::label) = label_of(own->element, names);
+    text_of(texts, Detail::type) = own->element.type;
+    text_of(texts, Detail::id) = own->element.id;
+    const auto material = text.materials.find(std::string(own->element.id));
+    if (material != text.materials.end()) text_of(texts, Detail::material) = material->second;
+    if (const auto parent = nearest_element(own->node->mParent, any))
+        text_of(texts, Detail::parent) = label_of(parent->element, names);
+    const auto is_storey = [](const IfcElement& element) { return element.type == "IfcBuildingStorey"; };
+    if (const auto storey = nearest_element(&node, is_storey))
+        text_of(texts, Detail::level) = label_of(storey->element, names);
+}
+
+void add_node_details(const aiNode& node, DetailTexts& texts) {
+    text_of(texts, Detail::label) = name_of(node);
+    const aiNode* parent = node.mParent;
+    while (parent != nullptr && parent->mName.length == 0) parent = parent->mParent;
+    if (parent != nullptr) text_of(texts, Detail::parent) = name_of(*parent);
+}
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
@@ -52,6 +124,24 @@ shape::Mesh shape_of(const MeshFile& file, const MeshInstance& instance) {
 }
 
 }  // namespace
+
+ObjectDetails details_of(const MeshFile& file) {
+    ObjectDetails details;
+    DetailsBuilder builder(details);
+    const bool is_ifc = is_ifc_file(file.path());
+    for (const MeshInstance& instance : file.instances()) {
+        DetailTexts texts;
+        if (is_ifc) {
+            add_ifc_details(*instance.node, file.ifc_text(), texts);
+        } else {
+            add_node_details(*instance.node, texts);
+        }
+        std::string& material = text_of(texts, Detail::material);
+        if (material.empty()) material = joined_materials(materials_of(file, instance));
+        builder.add(texts);
+    }
+    return details;
+}
 
 LoadedShapes shapes_of(const MeshFile& file) {
     LoadedShapes loaded;

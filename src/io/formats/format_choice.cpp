@@ -1,7 +1,9 @@
-#include "io/formats.hpp"
+#include "io/formats/format_choice.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
@@ -14,21 +16,18 @@
 
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
-#include "io/files/stream_input.hpp"
+#include "io/files/letter_case.hpp"
 #include "io/formats/content_marks.hpp"
 #include "io/formats/format_table.hpp"
 #include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
+#include "io/meshes/three_mf/three_mf_scene.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::io {
 
 std::string ending_of(const std::string& path) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    for (char& c : ending) {
-        if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-    }
-    return ending;
+    return in_lower_case(std::filesystem::path(path).extension().string());
 }
 
 namespace {
@@ -133,6 +132,44 @@ void refuse_without_mark(const std::string& path, std::string_view ending, const
     refuse(path, fmt::format("has no {} at its beginning, which files of its format ({}) have", found->second, ending));
 }
 
+/// Where a text states its version: after a key, up to one of the ends.
+struct VersionPlace {
+    std::string_view ending, key, ends;
+};
+
+constexpr auto version_places = std::to_array<VersionPlace>({
+    {".ifc", "FILE_SCHEMA(('", "'"},
+    {".gltf", "\"version\":\"", "\""},
+    {".gltf", "\"version\": \"", "\""},
+    {".gltf", "\"version\" : \"", "\""},
+    {".dae", "<COLLADA version=\"", "\""},
+    {".dae", "COLLADASchema\" version=\"", "\""},
+    {".x3d", "<X3D version=\"", "\""},
+    {".amf", "<amf version=\"", "\""},
+    {".dxf", "$ACADVER\n1\n", "\n"},
+    {".dxf", "$ACADVER\n  1\n", "\n"},
+    {".fbx", "FBXVersion: ", "\n"},
+    {".ply", "format ", "\n"},
+    {".x", "xof ", " \n"},
+    {".md5mesh", "MD5Version ", "\n"},
+    {".ac", "AC3D", "\n"},
+});
+
+std::uint32_t number_in(std::string_view bytes, std::size_t offset) {
+    std::uint32_t number = 0;
+    if (bytes.size() >= offset + sizeof number) std::memcpy(&number, bytes.data() + offset, sizeof number);
+    return number;
+}
+
+std::string binary_version(std::string_view bytes, std::string_view ending) {
+    if (ending == ".npy" && bytes.size() > 8) return fmt::format("{}.{}", int(bytes[6]), int(bytes[7]));
+    if (ending == ".glb") return fmt::format("{}", number_in(bytes, 4));
+    if (ending == ".fbx" && bytes.starts_with("Kaydara")) return fmt::format("{}", number_in(bytes, 23));
+    if ((ending == ".lwo" || ending == ".lxo") && bytes.size() > 12) return std::string(bytes.substr(8, 4));
+    if (ending == ".stl") return bytes.find("facet") == std::string_view::npos ? "binary" : "text";
+    return {};
+}
+
 }  // namespace
 
 KnownFormat known_format(const std::string& path) { return known_by_head(path, head_of(path)); }
@@ -204,6 +241,26 @@ SceneSpace format_space(const std::string& path) {
 bool may_name_files(const std::string& path) {
     const std::string ending = format_ending(path);
     return ending == ".gltf" || ending == ".json";
+}
+
+std::string version_of(const std::string& path) {
+    const InputFile file(path);
+    std::string head(std::size_t(std::min<std::uint64_t>(file.size(), FileHead::head_bytes)), '\0');
+    file.read(0, std::as_writable_bytes(std::span(head)));
+    const std::string ending = format_ending(path);
+#ifdef OCTOPAIR_WITH_MESHES
+    if (is_three_mf_ending(ending)) return three_mf_version(path);
+#endif
+    if (std::string version = binary_version(head, ending); !version.empty()) return version;
+    std::erase(head, '\r');
+    for (const VersionPlace& place : version_places) {
+        if (place.ending != ending) continue;
+        const std::size_t at = head.find(place.key);
+        if (at == std::string::npos) continue;
+        const std::string_view rest = std::string_view(head).substr(at + place.key.size(), 40);
+        return std::string(rest.substr(0, rest.find_first_of(place.ends)));
+    }
+    return {};
 }
 
 ResultFormat result_format(const std::string& path) {

@@ -1,4 +1,4 @@
-#include "base/io_failure.hpp"
+#include "base/descriptor.hpp"
 
 #include <cerrno>
 #include <string>

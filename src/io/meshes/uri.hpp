@@ -1,4 +1,4 @@
-// URIs of buffers of a glTF file: data in the URI itself, or the name of a file.
+// URIs in mesh files: data in the URI itself (glTF), or the name of a file or a part.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 #include "base/memory.hpp"
 
-namespace octopair::io::gltf {
+namespace octopair::io {
 
 /// Returns `uri` with each %XX replaced by the byte XX. A % without two hexadecimal digits stays as it is.
 std::string percent_decoded(std::string_view uri);
@@ -33,4 +33,4 @@ std::string without_blanks(std::string_view text);
 /// Throws: Error{cancelled} soon after a stop request.
 std::optional<Buffer<std::byte>> decoded_base64(std::string_view text, const std::stop_token& stop);
 
-}  // namespace octopair::io::gltf
+}  // namespace octopair::io

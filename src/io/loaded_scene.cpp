@@ -1,4 +1,4 @@
-#include "io/loaded_shapes.hpp"
+#include "io/loaded_scene.hpp"
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "io/meshes/gltf/uri.hpp"
+#include "io/meshes/uri.hpp"
 
 #include <array>
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include "io/files/failure.hpp"
 #include "io/files/letter_case.hpp"
 
-namespace octopair::io::gltf {
+namespace octopair::io {
 
 namespace {
 
@@ -97,4 +97,4 @@ std::optional<Buffer<std::byte>> decoded_base64(std::string_view text, const std
     return bytes;
 }
 
-}  // namespace octopair::io::gltf
+}  // namespace octopair::io

@@ -1,4 +1,5 @@
-// Side of a line in a projection, exact for all finite float64 coordinates.
+// Signs that are exact for all finite float64 coordinates: the side of a line in a projection (line_side()), and comparisons of sums of
+// squared differences (compare_square_sums()). The latter are slow: they are for cases that float64 rounding leaves open.
 //
 // Filter    A sign is first computed in float64. Each operation errs by at most 2^-53 of its result. So the sum errs by at
 //           most a small multiple of 2^-53 of the permanent: the same sum with all terms positive.
@@ -8,6 +9,7 @@
 // Source    Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, section 4.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "base/private_export.hpp"
@@ -37,5 +39,21 @@ inline int line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsig
     const int sign = filter::safe_sign(left - right, filter::line_error * permanent + filter::underflow);
     return sign != 0 ? sign : exact_line_side(a, b, c, axis);
 }
+
+/// The real number high - low. Requires: both are finite; high >= low.
+struct Gap {
+    double high = 0;
+    double low = 0;
+};
+using Gaps = std::array<Gap, 3>;
+
+/// Returns -1, 0 or 1 if the sum of the squares of `a` is less than, equal to or greater than that of `b`.
+int compare_square_sums(const Gaps& a, const Gaps& b);
+
+/// Compares the root of the sum of the squares of `gaps` with the middle between `low` and the next larger float64. The
+/// successor of the largest float64 counts as 2^1024. Returns -1, 0 or 1 if the root is less than, equal to or greater than the
+/// middle.
+/// Requires: `low` is finite and >= 0.
+int compare_root_with_middle(const Gaps& gaps, double low);
 
 }  // namespace octopair

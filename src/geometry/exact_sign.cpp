@@ -1,16 +1,32 @@
-// Exact integer arithmetic: all numbers become integer multiples of the least power of two among them (dyadic_grid.hpp). Most
-// coordinates span few binary digits, so that two or four 64-bit words hold the sum. The widest type holds any float64.
-#include "geometry/square_sum.hpp"
+// Signs that float64 cannot decide, computed with integers, in the fewest words that hold the determinant. Most meshes have
+// coordinates of 12 to 24 bits, so two words suffice.
+#include "geometry/exact_sign.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/word_integer.hpp"
+#include "geometry/exact_integer.hpp"
 
 namespace octopair {
 namespace {
+
+/// Returns the sign of the determinant of the rows b - a, c - a. The grid holds the rows a, b, c.
+template <std::size_t words>
+int line_sign(const DyadicGrid<6>& grid) {
+    const auto difference = [&](std::size_t from, std::size_t less) {
+        WordInteger<words> number(grid.number(from), grid.unit());
+        number.subtract(WordInteger<words>(grid.number(less), grid.unit()));
+        return number;
+    };
+    WordInteger<words> left, right;
+    left.add_product(difference(2, 0), difference(5, 1));
+    right.add_product(difference(3, 1), difference(4, 0));
+    left.subtract(right);
+    return left.sign();
+}
 
 struct Difference {
     Dyadic high{0}, low{0};
@@ -64,6 +80,19 @@ Differences differences_of(const Gaps& gaps) {
 }
 
 }  // namespace
+
+int exact_line_side(const Point3d& a, const Point3d& b, const Point3d& c, unsigned axis) {
+    const unsigned u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+    for (const unsigned across : {u, v}) {
+        if (a[across] == b[across] && a[across] == c[across]) return 0;
+    }
+    const DyadicGrid<6> grid({a[u], a[v], b[u], b[v], c[u], c[v]});
+    // The difference of products of two differences: 2 * (bits + 1) + 1 bits, and a sign.
+    if (grid.bits() <= 62) return line_sign<2>(grid);
+    if (grid.bits() <= 126) return line_sign<4>(grid);
+    if (grid.bits() <= 254) return line_sign<8>(grid);
+    return line_sign<66>(grid);  // at most 1024 + 1074 bits
+}
 
 int compare_square_sums(const Gaps& a, const Gaps& b) { return compare(differences_of(a), differences_of(b)); }
 

@@ -1,4 +1,4 @@
-// File formats: the one place that decides which format a file has and who reads it.
+// The one place that decides which format a file has, and who reads it.
 // Start here to add a new format of results.
 //
 // - A mark at the beginning of the content decides first, the ending of the name second (formats/content_marks.hpp). Case is ignored.
@@ -7,7 +7,7 @@
 // - Results have the format of their ending. Without one they are CSV.
 //
 // Scenes    scene_reader.cpp calls the reader of a format.
-// Results   results/pair_writer.cpp, collision_writer.cpp and event_writer.cpp write the formats.
+// Results   results/pair_writer.cpp and collision_writer.cpp write the formats.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ void check_not_wrapped(const std::string& path);
 /// Returns a warning "FILE: ..." about a file whose name has the ending of another format, or an empty text.
 std::string name_warning(const std::string& path);
 
-/// Format of a scene file by its reader. Meshes are `mesh`, whoever reads them. Readers refuse `unknown` files.
+/// Format of a scene file by its reader. Meshes are `mesh`, also those that Assimp reads. Readers refuse `unknown` files.
 enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 
 /// Format of a file of pairs or collisions. `npy` is an array of pairs; the others are rows of text.
@@ -80,6 +80,11 @@ bool is_ifc_file(const std::string& path);
 
 /// Returns whether a scene file may name other files that must be read too (glTF, JSON).
 bool may_name_files(const std::string& path);
+
+/// Returns the version of a scene file within its format, for example "IFC2X3", "1.4.1" or "binary"; empty if the beginning of the file
+/// states none.
+/// Throws: Error{io_failed}.
+std::string version_of(const std::string& path);
 
 /// Throws: Error{usage} for an ending that is not .npy, .csv or .jsonl.
 ResultFormat result_format(const std::string& path);
