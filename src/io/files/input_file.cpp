@@ -1,11 +1,11 @@
 #include "io/files/input_file.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-
-#include <poll.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>

@@ -1,11 +1,11 @@
 #include "io/results/result_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/memory.hpp"
 #include "base/stop.hpp"
