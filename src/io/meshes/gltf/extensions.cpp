@@ -1,5 +1,4 @@
 // Extensions of glTF: which ones a file may require.
-
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -7,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/meshes/gltf/fields.hpp"
+#include "io/meshes/gltf/gltf_file.hpp"
 
 namespace octopair::io::gltf {
 

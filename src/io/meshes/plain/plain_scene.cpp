@@ -1,5 +1,4 @@
 // Scenes of mesh files of simple formats.
-
 #include <algorithm>
 #include <array>
 #include <cmath>
