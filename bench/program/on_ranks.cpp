@@ -1,6 +1,6 @@
 #include "program/on_ranks.hpp"
 
-#include "cli/command/failure.hpp"
+#include "cli/command/program_main.hpp"
 #include "io/files/atomic_file.hpp"
 #include "octopair/error.hpp"
 

@@ -2,11 +2,26 @@
 #include "cli/command/command.hpp"
 #include "cli/command/program_main.hpp"
 #include "cli/subcommands.hpp"
+#include "octopair/error.hpp"
 #include "octopair/version.hpp"
 
 namespace octopair::cli {
 
 namespace {
+
+#ifndef OCTOPAIR_WITH_VIEWER
+/// Adds the subcommand of a build without the viewer, which says how to get it.
+void add_missing_view(Command& program) {
+    Command command = program.add_subcommand("view", "show a scene in a browser (not in this build)");
+    command.ignore_other_arguments();
+    command.callback([] {
+        throw Error(
+            ErrorCode::usage,
+            "view: this octopair was built without the viewer; `scripts/run view INPUT` builds it, and so does CMake "
+            "with -DOCTOPAIR_WITH_VIEWER=ON, which needs the commands node and npm (scripts/setup viewer)");
+    });
+}
+#endif
 
 int run(int argc, char** argv) {
     CommandLine line("octopair", "Every colliding pair among millions of moving 3D objects.",
@@ -18,7 +33,11 @@ int run(int argc, char** argv) {
     add_generate(program, action);
     add_info(program, action);
     add_replay(program, action);
+#ifdef OCTOPAIR_WITH_VIEWER
     add_view(program, action);
+#else
+    add_missing_view(program);
+#endif
 #ifdef OCTOPAIR_WITH_SERVICE
     add_serve(program, action);
     add_submit(program, action);

@@ -18,7 +18,6 @@ void add_result(Command& program, Action& action);
 void add_serve(Command& program, Action& action);
 void add_status(Command& program, Action& action);
 void add_submit(Command& program, Action& action);
-/// In a build without the viewer, the subcommand says how to get it.
 void add_view(Command& program, Action& action);
 
 }  // namespace octopair::cli

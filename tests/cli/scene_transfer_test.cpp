@@ -1,5 +1,5 @@
 // Tests the serialization of scenes: the transfer preserves every part of a scene.
-#include "cli/input/scene_transfer.hpp"
+#include "cli/input/isolated_read.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <pthread.h>
 
-#include "cli/command/failure.hpp"
+#include "cli/command/program_main.hpp"
 
 namespace octopair::cli {
 

@@ -1,5 +1,6 @@
 // Checks and parses values of options. Numbers are decimal. Parsing does not depend on the locale, and the whole text must be a
 // number.
+// No output file may replace an input, or another output.
 #pragma once
 
 #include <cstdint>
@@ -27,5 +28,14 @@ double parse_length(std::string_view option, const std::string& text);
 
 /// Returns the number with commas between groups of three digits: 1234567 gives "1,234,567".
 std::string grouped(std::uint64_t number);
+
+/// A file of an option, for messages. An empty path means that the option is not given.
+struct FileOption {
+    std::string_view option;  ///< empty: the file is an argument
+    std::string path;
+};
+
+/// Throws: Error{usage} if an output is the same regular file as an input or another output, also by another name or through a link.
+void check_outputs(const std::vector<FileOption>& inputs, const std::vector<FileOption>& outputs);
 
 }  // namespace octopair::cli

@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "base/descriptor.hpp"
-#include "cli/command/failure.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

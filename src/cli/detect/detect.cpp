@@ -6,17 +6,17 @@
 #include <optional>
 #include <utility>
 
-#include "cli/command/failure.hpp"
 #include "cli/command/interrupt.hpp"
+#include "cli/command/program_main.hpp"
 #include "cli/detect/detect_options.hpp"
+#include "cli/detect/detect_report.hpp"
 #include "cli/detect/detection.hpp"
 #include "cli/detect/event_detection.hpp"
 #include "cli/detect/frame_search.hpp"
-#include "cli/output/report.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/atomic_file.hpp"
 #ifdef OCTOPAIR_WITH_MPI
-#include "cli/detect/rank_facts.hpp"
+#include "cli/detect/rank_group.hpp"
 #include "cli/ranks/cluster.hpp"
 #include "engine/mpi/leading/leading.hpp"
 #endif

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/command/command.hpp"
-#include "cli/command/file_options.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/detect/event_detection.hpp"
 #include "cli/engine_choice.hpp"

@@ -1,4 +1,4 @@
-// `octopair detect`, from files to files: what was asked, what came of it.
+// `octopair detect`, from files to files.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "cli/command/command.hpp"
+#include "cli/detect/detect_report.hpp"
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/engine_choice.hpp"
-#include "io/results/baseline.hpp"
 #include "io/scene_reader.hpp"
 #include "octopair/engine.hpp"
-#include "octopair/pipeline.hpp"
 
 namespace octopair::cli {
 
@@ -38,55 +37,6 @@ struct DetectRequest {
     std::string stats;  ///< a file, or empty
     bool quiet = false;
     std::vector<GivenOption> given;  ///< the same options as texts, to compare those of ranks
-};
-
-/// Wall-clock seconds. `detect` excludes the time in filters and in writing; `filter` excludes the time in the search and in
-/// writing.
-struct DetectSeconds {
-    double total = 0, read = 0;
-    double prepare = 0;  ///< of shapes and filters, before the first search
-    double detect = 0, filter = 0, write = 0;
-    double verify = 0;  ///< if it was asked for
-};
-
-/// Rows written.
-struct EventCounts {
-    std::uint64_t began = 0, ended = 0;
-};
-
-struct DetectReport {
-    std::uint64_t objects = 0;  ///< of both sets, in each frame
-    std::uint64_t frames = 1;
-    bool moving = false;
-    std::uint64_t pairs = 0;  ///< what came out, of all frames
-    bool truncated = false;
-    bool verified = false;                                       ///< the pairs of boxes in each frame so far
-    bool collisions_verified = false;                            ///< also the collisions, by certificates
-    std::string not_checked;                                     ///< in one of the frames at least, for users
-    std::uint64_t candidates = 0;                                ///< pairs of boxes, as far as they were looked for
-    std::vector<FilterCounts> filters;                           ///< of all frames
-    std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
-    std::optional<double> tolerance;                             ///< of the exact stages
-    bool tolerance_is_precision = false;                         ///< the tolerance is that of float32
-    std::uint64_t open_objects = 0;                              ///< objects whose geometry is not closed
-    std::vector<std::string> first_open;                         ///< names of the first of them
-    std::vector<std::string> warnings;                           ///< about the inputs, after input_warnings()
-    std::optional<io::ChangeCounts> changes;                     ///< where there is a baseline
-    std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
-    std::uint64_t entries = 0;
-    StepSeconds steps;
-    DetectSeconds seconds;
-    EngineDescription engine;
-
-    /// What a frame's call did, beside `written` seconds that went by in writing.
-    void add(const Summary& summary, double written);
-    void add(const PipelineSummary& summary, double written);
-    /// Adds a property that a check did not cover. Empty: none.
-    void add_not_checked(std::string_view what);
-
-private:
-    void add_search(const Summary& search);
-    void add(const Verification& verification);
 };
 
 /// Finds the pairs of a request, on the processes of a group, and writes them.

@@ -10,7 +10,7 @@
 #include "cli/detect/event_source.hpp"
 #include "cli/detect/input_warnings.hpp"
 #include "cli/input/frame_set.hpp"
-#include "cli/input/join.hpp"
+#include "cli/input/search_inputs.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"

@@ -11,7 +11,7 @@
 
 #include "cli/detect/detection.hpp"
 #include "cli/input/frame_set.hpp"
-#include "cli/input/join.hpp"
+#include "cli/input/search_inputs.hpp"
 
 namespace octopair::cli {
 

@@ -13,12 +13,6 @@
 
 namespace octopair::cli {
 
-/// The sets of a search. `second` is null unless the search is a join.
-struct SetPair {
-    const InputSet& first;
-    const InputSet* second = nullptr;
-};
-
 class FilterChain {
 public:
     virtual ~FilterChain() = default;

@@ -1,6 +1,6 @@
 // SearchGroup: the processes that search together, and FrameSearch: how they find and write the pairs of one frame after another.
 // There are two of each: one process with any engine streams its pairs (stream_search.cpp); ranks of MPI read slices and join their
-// pieces (rank_search.cpp).
+// pieces (rank_group.hpp).
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,10 @@
 
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
-#include "cli/input/whole_inputs.hpp"
+#include "cli/input/search_inputs.hpp"
 #include "cli/ranks/group.hpp"
 
 namespace octopair::cli {
-
-class Cluster;
 
 /// One run of `octopair detect`: what was asked, what was read, what has come out so far.
 struct DetectRun {
@@ -62,9 +60,5 @@ public:
 };
 
 std::unique_ptr<SearchGroup> one_process();
-#ifdef OCTOPAIR_WITH_MPI
-/// Borrows `cluster`.
-std::unique_ptr<SearchGroup> ranks_of(Cluster& cluster);
-#endif
 
 }  // namespace octopair::cli

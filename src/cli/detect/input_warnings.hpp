@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/detect/filter_chain.hpp"
+#include "cli/detect/detection.hpp"
+#include "cli/input/input_set.hpp"
 
 namespace octopair::cli {
 

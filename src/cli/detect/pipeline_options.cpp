@@ -7,6 +7,7 @@
 #include "cli/command/command.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/detect/detection.hpp"
+#include "cli/input/input_set.hpp"
 #include "io/formats/format_choice.hpp"
 #include "octopair/error.hpp"
 
@@ -151,6 +152,16 @@ std::optional<std::string> input_of_boxes(const DetectRequest& request) {
 Stage stage_of(const DetectRequest& request) {
     if (request.pipeline.stage) return *request.pipeline.stage;
     return with_pipeline && !request.events && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
+}
+
+double tolerance_of(const DetectRequest& request, const SetPair& sets) {
+    if (request.pipeline.tolerance) return *request.pipeline.tolerance;
+    double largest = 0;
+    for (const InputSet* set : {&sets.first, sets.second}) {
+        if (set != nullptr) largest = std::max(largest, set->scene.largest_rounded);
+    }
+    constexpr double relative_step = 0x1p-23;
+    return 2 * largest * relative_step;
 }
 
 bool has_filters(const DetectRequest& request) {

@@ -13,8 +13,8 @@
 namespace octopair::cli {
 
 class Command;
-
 struct DetectRequest;
+struct SetPair;
 
 enum class Stage : std::uint8_t { pairs, objects, features };
 
@@ -48,6 +48,10 @@ Stage stage_of(const DetectRequest& request);
 
 /// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request);
+
+/// Returns the tolerance of --tolerance. Without it: 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two
+/// to four steps of float32 there; 0 if none was.
+double tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns whether the request needs filters.
 bool has_filters(const DetectRequest& request);

@@ -1,6 +1,5 @@
 // The search of ranks (`--engine mpi`): each rank finds its piece of a frame's pairs, filters it, and the pieces of all
 // ranks become one result.
-
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -10,9 +9,7 @@
 
 #include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
-#include "cli/detect/frame_search.hpp"
-#include "cli/detect/rank_facts.hpp"
-#include "cli/input/join.hpp"
+#include "cli/detect/rank_group.hpp"
 #include "cli/output/piece_output.hpp"
 #include "cli/ranks/cluster.hpp"
 #include "io/formats/format_choice.hpp"
@@ -20,7 +17,8 @@
 #include "octopair/mpi.hpp"
 #include "verification/verifier.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
-#include "cli/detect/rank_filters.hpp"
+#include "cli/detect/filter_chain.hpp"
+#include "cli/output/collision_piece.hpp"
 #endif
 
 namespace octopair::cli {
@@ -34,18 +32,102 @@ IndexedInput unindexed(const Input& input) {
     return {IndexedObjects{input.first, {}}, second};
 }
 
-/// True if indices need more bits than a Pair has, or if the request asks for 64 bits.
-bool has_wide_indices(const DetectRun& run) {
-    return run.request.wide_indices || run.report.objects > std::numeric_limits<std::uint32_t>::max();
+#ifdef OCTOPAIR_WITH_PIPELINE
+/// Filters on MPI ranks. Each rank has all objects, and filters its own piece of the pairs. All functions are collective. An exception is
+/// thrown on all ranks.
+class RankFilters {
+public:
+    /// Borrows all parameters. Requires: `sets` hold all objects, not slices.
+    RankFilters(const DetectRequest& request, Cluster& cluster, const SetPair& sets, const std::stop_token& stop);
+
+    /// Filters `pairs`, the piece of this rank, and appends the result to `kept` unless that is null. The limit of `options`
+    /// applies to all ranks together. Returns the sums over all ranks, without the search. The seconds are those of this rank.
+    PipelineSummary run(const PairList& pairs, const Options& options, CollisionPiece* kept);
+
+private:
+    /// Replaces `summary` by the sums over all ranks. Returns how many collisions this rank keeps under the limit.
+    std::uint64_t join(PipelineSummary& summary, const Options& options);
+    void add_classes(PipelineSummary& summary);
+
+    Cluster& cluster_;
+    std::unique_ptr<FilterChain> filters_;
+};
+
+/// Results of one rank, for the sums over all ranks.
+struct RankResult {
+    std::uint64_t collisions = 0;
+    bool truncated = false;
+};
+struct Work {
+    std::uint64_t in = 0, out = 0, undecided = 0;
+    double seconds = 0;
+};
+
+RankFilters::RankFilters(const DetectRequest& request, Cluster& cluster, const SetPair& sets,
+                         const std::stop_token& stop)
+    : cluster_(cluster) {
+    cluster_.together([&] { filters_ = make_filter_chain(request, sets, stop); });
 }
 
-/// Returns whether every rank needs all objects. Filters and verification look at any object, and boxes of shapes may depend on all.
-bool needs_whole_inputs(const DetectRequest& request) {
-    return has_filters(request) || request.verify || io::is_json_file(request.against) ||
-           std::any_of(request.inputs.begin(), request.inputs.end(), io::is_json_file);
+PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, CollisionPiece* kept) {
+    PipelineSummary summary;
+    double seconds = 0;
+    {
+        const Timed timed(seconds);  // includes waiting for the slowest rank
+        const CollisionSink keep = [&](const Batch& batch) { kept->add(batch.pairs(), batch.findings()); };
+        // Each rank may stop at the limit by itself: the piece of one rank has no more collisions than the whole result.
+        cluster_.together(
+            [&] { summary = filters_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
+        const std::uint64_t own = join(summary, options);
+        if (kept != nullptr) {
+            kept->cut(own);
+            summary.of_class = kept->of_class();
+        }
+        add_classes(summary);
+    }
+    summary.seconds = seconds;
+    return summary;
 }
 
-SliceNumber own_slice(const Cluster& cluster) { return {cluster.rank(), cluster.ranks()}; }
+/// Sums the classes of all ranks. They are unknown if the limit left out collisions that no rank keeps.
+void RankFilters::add_classes(PipelineSummary& summary) {
+    const auto of_ranks = cluster_.all_gather(summary.of_class);
+    summary.of_class = {};
+    std::uint64_t all = 0;
+    for (const auto& own : of_ranks) {
+        for (std::size_t i = 0; i < own.size(); ++i) all += own[i], summary.of_class[i] += own[i];
+    }
+    if (all != summary.collisions) summary.of_class = {};
+}
+
+std::uint64_t RankFilters::join(PipelineSummary& summary, const Options& options) {
+    const std::uint64_t limit = options.limit.value_or(std::numeric_limits<std::uint64_t>::max());
+    const std::vector<RankResult> results = cluster_.all_gather(RankResult{summary.collisions, summary.truncated});
+    std::uint64_t before = 0, all = 0;
+    for (unsigned rank = 0; rank < cluster_.ranks(); ++rank) {
+        if (rank == cluster_.rank()) before = all;
+        all += results[rank].collisions;
+        summary.truncated |= results[rank].truncated;
+    }
+    summary.truncated |= all > limit;
+    summary.collisions = std::min(all, limit);
+
+    std::vector<Work> own;
+    own.reserve(summary.filters.size());
+    for (const FilterCounts& filter : summary.filters)
+        own.push_back({filter.in, filter.out, filter.undecided, filter.seconds});
+    const std::vector<Work> works = cluster_.all_gather(std::span<const Work>(own));
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        if (i / own.size() == cluster_.rank()) continue;
+        FilterCounts& counts = summary.filters[i % own.size()];
+        counts.in += works[i].in;
+        counts.out += works[i].out;
+        counts.undecided += works[i].undecided;
+        counts.seconds += works[i].seconds;
+    }
+    return limit - std::min(limit, before);
+}
+#endif
 
 class RankedSearch final : public FrameSearch {
 public:
@@ -173,63 +255,10 @@ private:
 #endif
 };
 
-/// Reads this rank's slice of each set.
-void read_slices(DetectRun& run, const Cluster& cluster) {
-    const DetectRequest& request = run.request;
-    const SliceRequest slice{own_slice(cluster), cluster.first()};
-    InputSet &first = run.inputs.first, &second = run.inputs.second;
-    first = read_input_slice(request.inputs, {request.mesh_objects}, slice, run.stop);
-    if (run.join()) second = read_input_slice({request.against}, {request.mesh_objects}, slice, run.stop);
-    run.inputs.frames =
-        joint_frames({first.scene.frames, first.scene.moving}, {second.scene.frames, second.scene.moving}, request);
-    run.inputs.padding.emplace(request, SetSizes{first.total, second.total}, run.stop);
-    const auto own = [](std::span<const double> all, const InputSet& set) {
-        return all.empty() ? all : all.subspan(set.begin, set.scene.objects);
-    };
-    first.padding = own(run.inputs.padding->inputs(), first);
-    second.padding = own(run.inputs.padding->against(), second);
-}
-
-class RankGroup final : public SearchGroup {
-public:
-    explicit RankGroup(Cluster& cluster) : cluster_(cluster) {}
-
-    Group& processes() override { return cluster_; }
-
-    void read_inputs(DetectRun& run) override {
-        if (needs_whole_inputs(run.request)) return run.inputs.read(run.request, run.progress, run.stop);
-        read_slices(run, cluster_);
-    }
-
-    void check_objects(DetectRun& run) override {
-        run.report.engine.ranks = cluster_.ranks();
-        if (!has_wide_indices(run)) return;
-        const std::string objects = std::to_string(run.report.objects) + " objects: ";
-        if (run.request.verify) throw Error(ErrorCode::resource_limit, objects + "--verify has indices of 32 bits");
-        if (has_filters(run.request))
-            throw Error(ErrorCode::resource_limit, objects + "filters have indices of 32 bits");
-        if (!io::is_array_file(run.request.output) && !run.request.count_only) {
-            throw Error(ErrorCode::resource_limit, objects + "indices of 64 bits go to .npy files alone");
-        }
-    }
-
-    void compare_inputs(DetectRun& run) override {
-        const Timed timed(run.report.seconds.read);
-        Facts facts;
-        cluster_.together([&] { facts = input_facts(run); });
-        cluster_.require_same(facts);
-    }
-
-    std::unique_ptr<FrameSearch> make_search(DetectRun& run) override {
-        return std::make_unique<RankedSearch>(run, cluster_);
-    }
-
-private:
-    Cluster& cluster_;
-};
-
 }  // namespace
 
-std::unique_ptr<SearchGroup> ranks_of(Cluster& cluster) { return std::make_unique<RankGroup>(cluster); }
+std::unique_ptr<FrameSearch> make_ranked_search(DetectRun& run, Cluster& cluster) {
+    return std::make_unique<RankedSearch>(run, cluster);
+}
 
 }  // namespace octopair::cli

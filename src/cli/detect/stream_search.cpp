@@ -1,20 +1,71 @@
 // The search of one process: pairs, or the collisions that filters let through, go to the output as they are found.
-
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "base/timed.hpp"
 #include "cli/detect/filter_chain.hpp"
-#ifdef OCTOPAIR_WITH_PIPELINE
-#include "cli/detect/collision_check.hpp"
-#endif
 #include "cli/detect/frame_search.hpp"
+#include "cli/detect/pipeline_options.hpp"
 #include "cli/output/found_writer.hpp"
+#ifdef OCTOPAIR_WITH_PIPELINE
+#include "cli/input/shaped_set.hpp"
+#include "verification/shapes/stage_check.hpp"
+#endif
 
 namespace octopair::cli {
 
 namespace {
+
+#ifdef OCTOPAIR_WITH_PIPELINE
+/// Checks the collisions of one frame by certificates (--verify with an exact stage).
+class CollisionCheck {
+public:
+    /// Borrows all but the token.
+    CollisionCheck(const DetectRequest& request, const SetPair& sets, std::uint64_t frame, std::stop_token stop);
+    CollisionCheck(const CollisionCheck&) = delete;
+    CollisionCheck& operator=(const CollisionCheck&) = delete;
+
+    /// Takes the next collisions of the frame.
+    void take(const Batch& batch) { check_->take(batch.pairs(), batch.findings()); }
+    /// Checks all collisions of the frame. `excluded`: the pairs that exclusion rules leave out. Throws: as StageCheck::finish().
+    StageCheck::Result finish(std::span<const Pair> excluded);
+
+private:
+    Objects first_boxes_, second_boxes_;
+    ShapedObjects first_, second_;
+    std::unique_ptr<StageCheck> check_;
+};
+
+CollisionCheck::CollisionCheck(const DetectRequest& request, const SetPair& sets, std::uint64_t frame,
+                               std::stop_token stop) {
+    const bool join = sets.second != nullptr;
+    first_boxes_ = sets.first.frame(frame);
+    first_ = sets.first.shaped->objects(sets.first.padding);
+    if (join) {
+        second_boxes_ = sets.second->frame(frame);
+        second_ = sets.second->shaped->objects(sets.second->padding);
+    }
+    const StageRules rules{request.margin, tolerance_of(request, sets), stage_of(request) == Stage::features,
+                           request.pipeline.min_depth};
+    check_ =
+        std::make_unique<StageCheck>(StageCheck::Setup{{first_boxes_, join ? &second_boxes_ : nullptr, request.margin},
+                                                       first_,
+                                                       join ? &second_ : nullptr,
+                                                       rules,
+                                                       local_threads(request.engine),
+                                                       std::move(stop)});
+}
+
+StageCheck::Result CollisionCheck::finish(std::span<const Pair> excluded) {
+    check_->exclude(excluded);
+    return check_->finish();
+}
+#endif
 
 class StreamSearch final : public FrameSearch {
 public:

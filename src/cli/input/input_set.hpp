@@ -60,6 +60,12 @@ struct InputSet {
     std::optional<Fault> find_fault() const;
 };
 
+/// The sets of a search. `second` is null unless the search is a join.
+struct SetPair {
+    const InputSet& first;
+    const InputSet* second = nullptr;
+};
+
 /// Reads files as one set. Sets of JSON scenes, and of triangles read with SceneContent::shapes, have no boxes until
 /// make_shaped() computes them (shaped_set.hpp).
 /// Requires: no other thread of this process runs (isolated_read.hpp). So read all sets before make_shaped().

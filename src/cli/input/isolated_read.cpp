@@ -1,4 +1,4 @@
-// The child sends through a pipe: an Answer, then either an error message or the scene (scene_transfer.hpp).
+// The child sends through a pipe: an Answer, then either an error message or the scene (send_scene()).
 #include "cli/input/isolated_read.hpp"
 
 #include <fcntl.h>
@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "base/descriptor.hpp"
-#include "cli/input/scene_transfer.hpp"
 #include "io/files/failure.hpp"
 #include "io/formats/format_choice.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"

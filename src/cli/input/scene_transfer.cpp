@@ -1,9 +1,9 @@
-#include "cli/input/scene_transfer.hpp"
-
+// Sends a loaded scene as bytes from one process of this program to another on the same machine (isolated_read.hpp has the form).
 #include <concepts>
 #include <tuple>
 #include <type_traits>
 
+#include "cli/input/isolated_read.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

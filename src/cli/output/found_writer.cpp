@@ -5,17 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/input_warnings.hpp"
-#include "cli/detect/tolerance.hpp"
+#include "cli/detect/pipeline_options.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats/format_choice.hpp"
 #include "io/results/collision_writer.hpp"
-#include "io/results/html_report.hpp"
 #include "io/results/pair_writer.hpp"
-
-#ifdef OCTOPAIR_WITH_VIEWER
-#include "cli/view/report_view.hpp"
-#endif
 
 namespace octopair::cli {
 
@@ -92,70 +86,6 @@ std::unique_ptr<io::CollisionWriter> make_rows(const DetectRequest& request, con
                                                const std::stop_token& stop) {
     if (!request.output.empty()) return io::make_collision_file_writer(request.output, form);
     return io::make_collision_csv_writer(std::make_unique<io::StandardOutput>(stop), form);
-}
-
-std::string joined(const std::vector<std::string>& words) {
-    std::string all;
-    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-    return all;
-}
-
-/// Returns the axis up and the unit of the options, or else of the inputs' formats. Unknown where the formats differ.
-io::SceneSpace report_space(const DetectRequest& request, const FoundIn& sets) {
-    io::SceneSpace space = request.pipeline.space;
-    const io::SceneSpace &first = sets.first.scene.space, &second = sets.second.scene.space;
-    if (space.up == io::UpAxis::unknown && first.up == second.up) space.up = first.up;
-    if (space.unit.empty() && first.unit == second.unit) space.unit = first.unit;
-    return space;
-}
-
-#ifdef OCTOPAIR_WITH_VIEWER
-/// Passes the rows of a report to its viewer, too.
-class ReportWithView final : public io::CollisionWriter {
-public:
-    ReportWithView(std::unique_ptr<io::HtmlReport> report, ReportView view)
-        : view_(std::move(view)), report_(std::move(report)) {
-        report_->set_viewer([this] { return view_.page(); });
-    }
-
-    void write(const io::CollisionRows& rows) override {
-        view_.add(rows.pairs, rows.findings);
-        report_->write(rows);
-    }
-    void write_gone(std::span<const std::string_view> lines) override { report_->write_gone(lines); }
-    void finish() override { report_->finish(); }
-
-private:
-    ReportView view_;
-    std::unique_ptr<io::HtmlReport> report_;
-};
-#endif
-
-/// No times: the same result has the same page.
-std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
-                                                 const io::CollisionForm& form) {
-    io::ReportScene scene;
-    scene.title = joined(request.inputs) + (request.against.empty() ? "" : " against " + request.against);
-    scene.form = form;
-    scene.a = sets.first.frame(0).boxes;
-    scene.b = sets.second.frame(0).boxes;
-    scene.join = !request.against.empty();
-    scene.space = report_space(request, sets);
-    auto report = std::make_unique<io::HtmlReport>(std::make_unique<io::AtomicFile>(request.pipeline.report), scene);
-    const std::uint64_t objects = sets.first.scene.objects + (scene.join ? sets.second.scene.objects : 0);
-    report->add_fact("objects", fmt::format("{}", objects));
-    if (request.margin > 0) report->add_fact("margin", fmt::format("{}", request.margin));
-    const SetPair pair{sets.first, scene.join ? &sets.second : nullptr};
-    if (form.features) report->add_fact("tolerance", fmt::format("{:.3g}", tolerance_of(request, pair)));
-    for (const std::string& warning : input_warnings(request, pair)) report->add_note(warning);
-    if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
-    if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
-    if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);
-#ifdef OCTOPAIR_WITH_VIEWER
-    return std::make_unique<ReportWithView>(std::move(report), ReportView(request, sets.first, pair.second));
-#else
-    return report;
-#endif
 }
 
 std::unique_ptr<FoundWriter> make_collisions(const DetectRequest& request, const FoundIn& sets,

@@ -11,13 +11,21 @@
 #include <string>
 #include <vector>
 
-#include "cli/ranks/facts.hpp"
 #include "cli/ranks/group.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair::cli {
+
+/// A fact that all ranks of a command must have in common, such as an option or an input file. Ranks that differ would find the pairs of
+/// no scene, or wait for each other for ever.
+struct Fact {
+    std::string what;        ///< for messages, such as "--margin"; unique on a rank
+    std::string value;       ///< to be the same on all ranks
+    std::string where = {};  ///< shown behind the value, such as the path of a file; may differ
+};
+using Facts = std::vector<Fact>;
 
 class Cluster final : public Group {
 public:

@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "base/error_codes.hpp"
-#include "cli/command/failure.hpp"
 #include "cli/command/interrupt.hpp"
+#include "cli/command/program_main.hpp"
 #include "cli/ranks/cluster.hpp"
 #include "engine/mpi/leading/leading.hpp"
 #include "octopair/version.hpp"

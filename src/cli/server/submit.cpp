@@ -6,7 +6,7 @@
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detect_options.hpp"
 #include "cli/input/input_set.hpp"
-#include "cli/input/join.hpp"
+#include "cli/input/search_inputs.hpp"
 #include "cli/server/server_choice.hpp"
 #include "cli/subcommands.hpp"
 #include "io/files/output_stream.hpp"

@@ -1,13 +1,16 @@
-// Runs the user's browser.
+// The user's browser: is told where the page is, and draws pictures of pages.
 #pragma once
 
 #include <stop_token>
 #include <string>
 
+#include "cli/view/view.hpp"
+#include "viewer/server/page_server.hpp"
+
 namespace octopair::cli {
 
-/// Opens an address in the user's browser, if there is a display. Does not wait. Failures are ignored: the address is printed, too.
-void open_browser(const std::string& address);
+/// Prints the address of the page on standard output, and opens it in the user's browser unless --no-browser is given.
+void present(const ViewRequest& request, const viewer::PageServer& server);
 
 /// Returns the picture of a page (PNG, 1280 x 720), as a browser without a window draws it. The browser is Chromium or Chrome, or
 /// the program that OCTOPAIR_BROWSER names.

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/view/loaded_view.hpp"
 #include "cli/view/shown_scene.hpp"
+#include "cli/view/view.hpp"
 #include "io/results/result_file.hpp"
 #include "octopair/error.hpp"
 

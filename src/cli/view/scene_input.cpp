@@ -6,8 +6,8 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/pipeline_options.hpp"
-#include "cli/view/loaded_view.hpp"
 #include "cli/view/shown_scene.hpp"
+#include "cli/view/view.hpp"
 #include "io/files/failure.hpp"
 #include "io/results/result_file.hpp"
 #include "octopair/engine.hpp"

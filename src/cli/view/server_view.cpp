@@ -1,4 +1,5 @@
-#include "cli/view/server_view.hpp"
+// Shows the jobs and the scenes of a server (`octopair serve`).
+#include "cli/view/view.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -13,9 +14,7 @@
 
 #include "cli/server/server_choice.hpp"
 #include "cli/view/browser.hpp"
-#include "cli/view/presentation.hpp"
 #include "cli/view/server_contact.hpp"
-#include "cli/view/view_options.hpp"
 #include "octopair/error.hpp"
 #include "octopair/job_client.hpp"
 #include "octopair/scene_watcher.hpp"

@@ -7,7 +7,7 @@
 #include "cli/detect/input_warnings.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
-#include "cli/view/shown_shape.hpp"
+#include "viewer/scene/scene_contents.hpp"
 #endif
 
 namespace octopair::cli {
@@ -34,7 +34,7 @@ void add_shapes(viewer::SceneContents& contents, const InputSet& set) {
     };
     const double extent = std::hypot(reach(0), reach(1), reach(2));
     for (const Geometry& geometry : objects.geometries) {
-        contents.shapes.push_back(shown_shape(geometry.shape(), std::isfinite(extent) ? extent : 1));
+        contents.shapes.push_back(viewer::shown_shape(geometry.shape(), std::isfinite(extent) ? extent : 1));
     }
     contents.geometry.assign(objects.geometry.begin(), objects.geometry.end());
     contents.poses.assign(objects.poses.begin(), objects.poses.end());

@@ -10,16 +10,12 @@
 
 #include "base/stop.hpp"
 #include "cli/command/command.hpp"
-#include "cli/command/failure.hpp"
-#include "cli/command/file_options.hpp"
 #include "cli/command/interrupt.hpp"
 #include "cli/command/option_values.hpp"
+#include "cli/command/program_main.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/view/browser.hpp"
-#include "cli/view/loaded_view.hpp"
-#include "cli/view/presentation.hpp"
-#include "cli/view/server_view.hpp"
-#include "cli/view/view_options.hpp"
+#include "cli/view/view.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats/format_choice.hpp"
 #include "io/results/result_file.hpp"
@@ -201,14 +197,6 @@ int run_view(const ViewRequest& request) {
 }
 
 }  // namespace
-
-void present(const ViewRequest& request, const viewer::PageServer& server) {
-    fmt::print("{}\n", server.address());
-    std::fflush(stdout);
-    if (!request.detect.quiet) fmt::print(stderr, "Open this address in a browser. Ctrl-C ends the viewer.\n");
-    // The command line of a browser is visible to all users of the machine, so it must not have a token.
-    if (!request.no_browser && request.listen.empty()) open_browser(server.address());
-}
 
 void add_view(Command& program, Action& action) {
     Command command = program.add_subcommand("view", "show a scene, a result, a recording or a server in a browser");

@@ -1,4 +1,5 @@
-#include "cli/view/view_options.hpp"
+// Options of `octopair view`.
+#include "cli/view/view.hpp"
 
 #include <fmt/format.h>
 #include <sys/random.h>
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <array>
 
-#include "cli/command/file_options.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/detect/detect_options.hpp"
 #include "cli/server/server_choice.hpp"

@@ -13,6 +13,7 @@
 #include "octopair/objects.hpp"
 #include "octopair/options.hpp"
 #include "octopair/pose.hpp"
+#include "octopair/shapes.hpp"
 
 namespace octopair::viewer {
 
@@ -23,6 +24,9 @@ struct ShownShape {
     std::vector<std::array<float, 3>> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// Returns the triangles of a shape. Round shapes become polyhedra. `extent`: length of the scene, which limits the drawing of a plane.
+ShownShape shown_shape(const shape::Any& shape, double extent);
 
 /// Facts for people: a name, and a number or a text. A name with a dot ("seconds.read") is a measured time, which exported pages do not
 /// have: the same input gives the same page.

@@ -1,4 +1,4 @@
-#include "cli/output/report.hpp"
+#include "cli/detect/detect_report.hpp"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -10,6 +10,53 @@
 #include "io/results/collision_row.hpp"
 
 namespace octopair::cli {
+
+void DetectReport::add_search(const Summary& search) {
+    candidates += search.pairs;
+    entries += search.entries;
+    steps.encode += search.steps.encode;
+    steps.count += search.steps.count;
+    steps.scatter += search.steps.scatter;
+    steps.scan += search.steps.scan;
+    add(search.verification);
+}
+
+void DetectReport::add(const Verification& verification) {
+    verified = verification.done;
+    add_not_checked(verification.not_checked);
+    seconds.verify += verification.seconds;
+}
+
+void DetectReport::add_not_checked(std::string_view what) {
+    if (what.empty() || not_checked.find(what) != std::string::npos) return;
+    not_checked += (not_checked.empty() ? "" : "; ") + std::string(what);
+}
+
+void DetectReport::add(const Summary& summary, double written) {
+    add_search(summary);
+    pairs += summary.pairs;
+    truncated |= summary.truncated;
+    seconds.detect += std::max(0.0, summary.seconds - written);
+}
+
+void DetectReport::add(const PipelineSummary& summary, double written) {
+    add_search(summary.search);
+    pairs += summary.collisions;
+    truncated |= summary.truncated;
+    seconds.detect += summary.search.seconds;
+    const double search = summary.search.seconds + summary.search.verification.seconds;
+    seconds.filter += std::max(0.0, summary.seconds - search - written);
+    for (std::size_t i = 0; i < of_class.size(); ++i) of_class[i] += summary.of_class[i];
+    filters.resize(summary.filters.size());
+    for (std::size_t i = 0; i < filters.size(); ++i) {
+        const FilterCounts& counts = summary.filters[i];
+        filters[i].name = counts.name;
+        filters[i].in += counts.in;
+        filters[i].out += counts.out;
+        filters[i].undecided += counts.undecided;
+        filters[i].seconds += counts.seconds;
+    }
+}
 
 namespace {
 

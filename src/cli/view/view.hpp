@@ -1,20 +1,17 @@
-// LoadedView: an input of `octopair view` in memory, ready to be shown.
+// The parts of `octopair view`: options, the inputs that it can show, and the view of a server.
 #pragma once
 
 #include <memory>
 #include <stop_token>
 #include <string>
 
+#include "cli/command/command.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
 #include "viewer/scene/scene_contents.hpp"
+#include "viewer/server/page_server.hpp"
 
 namespace octopair::cli {
-
-struct LoadedView {
-    viewer::SceneContents contents;
-    std::unique_ptr<viewer::FrameFinder> finder;
-};
 
 /// Command line of `octopair view`. `detect` has the inputs of a scene and the options of the search.
 struct ViewRequest {
@@ -25,18 +22,48 @@ struct ViewRequest {
     unsigned port = 0;
 };
 
+// view_options.cpp
+
+void add_view_options(Command& command, ViewRequest& request);
+
+/// Sorts the inputs into scenes, a result, and the address of a server. Sets defaults.
+/// Throws: Error{usage} for options that do not fit together; Error{io_failed} for an input that cannot be read.
+void check_view_options(ViewRequest& request);
+
+/// Returns where the page is served. With --listen, makes a random token.
+/// Throws: Error{usage} for an invalid address.
+viewer::PageServerOptions server_options(const ViewRequest& request);
+
+/// An input in memory, ready to be shown.
+struct LoadedView {
+    viewer::SceneContents contents;
+    std::unique_ptr<viewer::FrameFinder> finder;
+};
+
+// scene_input.cpp
+
 /// Reads scene files. With a result, its pairs are shown, else those that a search finds.
 /// Requires: no other thread of this process runs (isolated_read.hpp).
 /// Throws: what read_input_set() throws; Error{bad_input} for a result that does not fit the scene.
 LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop);
 
+// result_input.cpp
+
 /// Reads a result without its scene: objects are where their contacts are. Throws: what read_result() throws.
 LoadedView load_result(const ViewRequest& request, const std::stop_token& stop);
+
+// recording_input.cpp
 
 /// Returns whether a file is the recording of a scene.
 bool is_recording(const std::string& path);
 /// Replays a recording. Keeps the steps in memory, and stops at a limit, which a notice tells.
 /// Throws: what replay() throws.
 LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop);
+
+// server_view.cpp
+
+/// Serves a page with the jobs and the scenes of a server (`octopair serve`) until a stop request.
+/// Throws: Error{engine_failed} if the server cannot be reached.
+void view_server(const ViewRequest& request, const std::stop_token& stop);
 
 }  // namespace octopair::cli

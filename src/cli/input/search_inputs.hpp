@@ -1,11 +1,14 @@
-// Frames and paddings of the two sets of a join.
+// Inputs of a search: one set, or the two sets of a join, with their frames and paddings.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
 
+#include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
+#include "cli/input/input_set.hpp"
 
 namespace octopair::cli {
 
@@ -34,6 +37,22 @@ public:
 private:
     Buffer<double> all_;
     std::size_t inputs_ = 0;
+};
+
+/// All objects and paddings that `octopair detect` reads. Neither copyable nor movable, because the sets borrow from `padding`.
+struct WholeInputs {
+    WholeInputs() = default;
+    WholeInputs(const WholeInputs&) = delete;
+    WholeInputs& operator=(const WholeInputs&) = delete;
+
+    InputSet first;
+    InputSet second;  ///< second set of a join, else empty
+    io::FrameCount frames;
+    std::optional<Paddings> padding;  ///< paddings of --padding
+
+    /// Reads the inputs, with shapes if filters need shapes. Shows progress.
+    /// Throws: what read_input_set(), make_shaped(), joint_frames() and Paddings throw.
+    void read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop);
 };
 
 }  // namespace octopair::cli

@@ -1,15 +1,16 @@
-#include "cli/view/shown_shape.hpp"
-
+// Shapes as triangles, for pictures. Round shapes become polyhedra.
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 
-namespace octopair::cli {
+#include "octopair/shapes.hpp"
+#include "viewer/scene/scene_contents.hpp"
+
+namespace octopair::viewer {
 
 namespace {
 
-using viewer::ShownShape;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr unsigned sides = 32;  ///< of a circle
@@ -230,10 +231,10 @@ constexpr std::string_view kinds[] = {"sphere",    "box",   "capsule",     "cyli
 
 }  // namespace
 
-viewer::ShownShape shown_shape(const shape::Any& shape, double extent) {
+ShownShape shown_shape(const shape::Any& shape, double extent) {
     ShownShape out = std::visit([&](const auto& some) { return shown(some, extent); }, shape);
     out.kind = kinds[shape.index()];
     return out;
 }
 
-}  // namespace octopair::cli
+}  // namespace octopair::viewer
