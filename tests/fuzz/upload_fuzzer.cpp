@@ -6,12 +6,11 @@
 #include <string_view>
 
 #include "octopair/error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
-#include "service/server/calls/download.hpp"
-#include "service/server/calls/upload.hpp"
+#include "service/server/calls/job_messages.hpp"
 
 namespace {
 

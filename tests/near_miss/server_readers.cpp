@@ -1,7 +1,7 @@
 // Readers of what servers and their clients need: tokens, roles and addresses.
 #include "near_miss/readers.hpp"
 #include "service/protocol/address.hpp"
-#include "service/protocol/private_file.hpp"
+#include "service/protocol/credential_files.hpp"
 #include "service/server/net/role_file.hpp"
 #include "service/server/net/token_file.hpp"
 

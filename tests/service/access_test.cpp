@@ -2,9 +2,9 @@
 #include <filesystem>
 
 #include "service/guarded.hpp"
+#include "service/protocol/credential_files.hpp"
 #include "service/protocol/grpc_lifetime.hpp"
 #include "service/protocol/octopair.pb.h"
-#include "service/protocol/private_file.hpp"
 #include "service/server/net/insecure_credentials.hpp"
 
 namespace octopair::test {

@@ -9,7 +9,7 @@
 #include "service/gate.hpp"
 #include "service/guarded.hpp"
 #include "service/metrics_page.hpp"
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/served.hpp"
 #include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/fair_order.hpp"

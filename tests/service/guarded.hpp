@@ -20,7 +20,7 @@
 #include "io/temporary.hpp"
 #include "octopair/client.hpp"
 #include "octopair/octopair.hpp"
-#include "service/server/log/event.hpp"
+#include "service/server/log/log_line.hpp"
 #include "service/server/server.hpp"
 
 namespace octopair::test {

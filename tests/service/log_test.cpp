@@ -43,7 +43,7 @@ protected:
 
 TEST_F(Log, EventsAreLinesForPeople) {
     const auto logger = log(LogForm::text);
-    service::log_event(
+    service::log_line(
         *logger, service::LogLevel::info, "job ended",
         {{"id", "x"}, {"reason", "two words"}, {"pairs", std::uint64_t(12)}, {"seconds", 0.5}, {"no", ""}});
     logger->warn("else {}", 3);
@@ -57,8 +57,8 @@ TEST_F(Log, EventsAreLinesForPeople) {
 TEST_F(Log, EventsAreObjectsForPrograms) {
     const auto logger = log(LogForm::json);
     const std::string nasty = "a\"b\\c\nd\x1f\xff \xc3\xa9";
-    service::log_event(*logger, service::LogLevel::warning, "refused",
-                       {{"owner", nasty}, {"allowed", std::uint64_t(7)}});
+    service::log_line(*logger, service::LogLevel::warning, "refused",
+                      {{"owner", nasty}, {"allowed", std::uint64_t(7)}});
     logger->info("plain {}", nasty);
     ASSERT_EQ(lines().size(), 2u) << text_.str();
     const json first = json::parse(lines()[0]), second = json::parse(lines()[1]);

@@ -9,7 +9,7 @@
 #include "service/protocol/messages.hpp"
 #include "service/raw_call.hpp"
 #include "service/served.hpp"
-#include "service/server/calls/upload.hpp"
+#include "service/server/calls/job_messages.hpp"
 
 namespace octopair::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/engine_choice.hpp"
-#include "service/server/log/event.hpp"
+#include "service/server/log/log_line.hpp"
 #include "service/server/server_options.hpp"
 
 namespace octopair::cli {

@@ -6,7 +6,7 @@
 #include "cli/command/command.hpp"
 #include "cli/command/option_values.hpp"
 #include "octopair/error.hpp"
-#include "service/protocol/private_file.hpp"
+#include "service/protocol/credential_files.hpp"
 
 namespace octopair::cli {
 

@@ -64,7 +64,7 @@ void log_start(spdlog::logger& log, const service::Server& server, const service
                                           {"engine", options.engine_name},
                                           {"width", std::uint64_t(options.engine_widths.large)}};
     fields.insert(fields.end(), more.begin(), more.end());
-    service::log_event(log, service::LogLevel::info, "started", fields);
+    service::log_line(log, service::LogLevel::info, "started", fields);
 }
 
 void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log) {

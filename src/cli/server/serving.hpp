@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cli/server/serve_options.hpp"
-#include "service/server/log/event.hpp"
+#include "service/server/log/log_line.hpp"
 #include "service/server/server.hpp"
 
 namespace octopair::cli {

@@ -4,19 +4,24 @@
 #include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 #include "base/stop.hpp"
 #include "octopair/error.hpp"
-#include "service/client/socket_trust.hpp"
 #include "service/protocol/address.hpp"
-#include "service/protocol/certificate.hpp"
+#include "service/protocol/credential_files.hpp"
 #include "service/protocol/grpc_lifetime.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
-#include "service/protocol/private_file.hpp"
 #include "service/protocol/status.hpp"
 
 namespace octopair::service {
@@ -40,6 +45,52 @@ void check_clear_token(const Address& address, const ClientOptions& options) {
     throw Error(ErrorCode::usage, address.text() +
                                       ": a token is not sent without encryption, because any user of this machine may "
                                       "listen there; use TLS, a Unix socket, or --token-in-clear");
+}
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void refuse_socket(const std::string& path, const std::string& why) {
+    throw Error(ErrorCode::usage, "unix:" + path + ": the token is not sent, because " + why);
+}
+
+uid_t user_of(const std::string& name) {
+    uid_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error == std::errc() && end == name.data() + name.size()) return number;
+    const passwd* const known = ::getpwnam(name.c_str());  // only one thread makes connections of a program's options
+    if (known == nullptr) throw Error(ErrorCode::usage, "no user has the name '" + name + "'");
+    return known->pw_uid;
+}
+
+std::vector<uid_t> trusted_users(const std::string& server_user) {
+    std::vector<uid_t> users = {::geteuid(), 0};
+    if (!server_user.empty()) users.push_back(user_of(server_user));
+    return users;
+}
+
+/// Checks a socket and all folders above it. Trusted are this user, root, and `server_user` (a name or number; empty: nobody else). The
+/// socket and the folders must belong to trusted users. Other users must not be able to write to the socket's folder, nor to
+/// folders above it, unless these are sticky, like /tmp. The socket need not exist.
+/// Throws: Error{usage} that names the folder or socket, or an unknown user.
+void check_socket_trust(const std::string& path, const std::string& server_user) {
+    const std::vector<uid_t> users = trusted_users(server_user);
+    const auto is_trusted = [&](const struct stat& found) {
+        return std::find(users.begin(), users.end(), found.st_uid) != users.end();
+    };
+    std::error_code error;
+    const fs::path socket = fs::weakly_canonical(fs::absolute(path, error), error);
+    struct stat found {};
+    if (::lstat(socket.c_str(), &found) == 0 && !is_trusted(found)) refuse_socket(path, "another user listens there");
+    for (fs::path folder = socket.parent_path();; folder = folder.parent_path()) {
+        if (::stat(folder.c_str(), &found) != 0)
+            refuse_socket(path, "the folder " + folder.string() + " cannot be examined");
+        if (!is_trusted(found)) refuse_socket(path, "the folder " + folder.string() + " belongs to another user");
+        const bool open = (found.st_mode & (S_IWGRP | S_IWOTH)) != 0;
+        const bool keeps_entries = (found.st_mode & S_ISVTX) != 0 && folder != socket.parent_path();
+        if (open && !keeps_entries)
+            refuse_socket(path, "other users can write to " + folder.string() + "; use a folder of your own");
+        if (folder == folder.root_path()) return;
+    }
 }
 
 std::shared_ptr<grpc::ChannelCredentials> credentials_of(const Address& address, const ClientOptions& options) {

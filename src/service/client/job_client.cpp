@@ -16,8 +16,8 @@
 #include "service/client/raw_stream.hpp"
 #include "service/client/received.hpp"
 #include "service/client/uploader.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/messages.hpp"
-#include "service/protocol/no_job_error.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/status.hpp"
 

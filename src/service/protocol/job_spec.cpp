@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "base/descriptor.hpp"
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {

@@ -5,8 +5,7 @@
 #include <new>
 
 #include "base/error_codes.hpp"
-#include "service/protocol/limit_error.hpp"
-#include "service/protocol/no_job_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/octopair.pb.h"
 
 namespace octopair::service {

@@ -1,20 +1,19 @@
 #include "service/server/server_context.hpp"
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include <grpcpp/server_context.h>
 
 #include <algorithm>
 #include <string>
 #include <utility>
 
+#include "service/protocol/errors.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
 #include "service/server/store/detached_jobs.hpp"
 #include "service/server/store/state_folder.hpp"
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace octopair::service {
 
@@ -43,6 +42,22 @@ void give_back_free_memory() {
 }
 
 }  // namespace
+
+void CallThreads::start(std::function<void()> work) {
+    const std::lock_guard lock(mutex_);
+    running_.remove_if([](const Running& running) { return running.ended.load(); });
+    Running& running = running_.emplace_back();
+    try {
+        running.thread = std::jthread([&running, work = std::move(work)]() mutable {
+            work();
+            work = nullptr;  // frees what `work` captured before the thread counts as ended
+            running.ended = true;
+        });
+    } catch (...) {
+        running_.pop_back();
+        throw;
+    }
+}
 
 ServerContext::ServerContext(const ServerOptions& given, std::shared_ptr<spdlog::logger> logger)
     : options(given),

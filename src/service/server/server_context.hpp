@@ -5,11 +5,13 @@
 
 #include <atomic>
 #include <functional>
+#include <list>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <thread>
 
-#include "service/protocol/limit_error.hpp"
-#include "service/server/calls/call_threads.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/server/calls/result_reader.hpp"
 #include "service/server/jobs/array_pool.hpp"
 #include "service/server/jobs/budget.hpp"
@@ -19,13 +21,33 @@
 #include "service/server/jobs/watchdog.hpp"
 #include "service/server/log/server_log.hpp"
 #include "service/server/net/access.hpp"
-#include "service/server/scenes/scene_table.hpp"
+#include "service/server/scenes/scene_publisher.hpp"
 #include "service/server/server_options.hpp"
 
 namespace octopair::service {
 
 class DetachedJobs;
 class StateFolder;
+
+/// Starts a thread for each call that needs its own. The destructor waits for all threads. Thread safety: any thread may call it.
+class CallThreads {
+public:
+    CallThreads() = default;
+    CallThreads(const CallThreads&) = delete;
+    CallThreads& operator=(const CallThreads&) = delete;
+
+    /// Runs `work` on a new thread. Requires: `work` does not throw. Throws: std::system_error if no thread can be created.
+    void start(std::function<void()> work);
+
+private:
+    struct Running {
+        std::atomic<bool> ended = false;
+        std::jthread thread;
+    };
+
+    std::mutex mutex_;
+    std::list<Running> running_;
+};
 
 /// A caller whose call was admitted. It counts as a call of the client while it exists.
 struct Admission {

@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/scenes/scene_server.hpp"
 
 namespace octopair::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <thread>
 
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/scenes/raw_scene.hpp"
 #include "service/scenes/scene_server.hpp"
 

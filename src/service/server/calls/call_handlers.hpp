@@ -9,9 +9,20 @@
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <memory>
+
+namespace grpc {
+class Service;
+}  // namespace grpc
+
 namespace octopair::service {
 
 class ServerContext;
+
+// calls.cpp
+
+/// Returns the gRPC service of octopair.proto. Requires: `server` outlives the service.
+std::unique_ptr<grpc::Service> make_calls(ServerContext& server);
 
 // detect_call.cpp
 

@@ -1,5 +1,4 @@
-#include "service/server/calls/calls.hpp"
-
+// The gRPC service of octopair.proto. It forwards each call to its function (call_handlers.hpp).
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/server/calls/call_handlers.hpp"
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "service/protocol/errors.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
 #include "service/server/calls/download_call.hpp"
-#include "service/server/calls/upload.hpp"
+#include "service/server/calls/job_messages.hpp"
 #include "service/server/server_context.hpp"
 
 namespace octopair::service {

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "service/protocol/status.hpp"
-#include "service/server/calls/download.hpp"
+#include "service/server/calls/job_messages.hpp"
 #include "service/server/server_context.hpp"
 
 namespace octopair::service {

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"

@@ -9,7 +9,7 @@
 #include "service/protocol/messages.hpp"
 #include "service/protocol/octopair.pb.h"
 #include "service/protocol/status.hpp"
-#include "service/server/calls/upload.hpp"
+#include "service/server/calls/job_messages.hpp"
 #include "service/server/server_context.hpp"
 #include "service/server/store/detached_jobs.hpp"
 #include "service/server/store/state_folder.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 
 namespace octopair::service {
 

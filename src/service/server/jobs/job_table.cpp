@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "octopair/error.hpp"
-#include "service/protocol/no_job_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/server/jobs/server_job.hpp"
 
 namespace octopair::service {

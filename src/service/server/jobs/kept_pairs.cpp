@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/messages.hpp"
 
 namespace octopair::service {

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "service/protocol/errors.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
 
 namespace octopair::service {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,7 +11,6 @@
 #include "octopair/engine.hpp"
 #include "service/protocol/job_hash.hpp"
 #include "service/server/jobs/array_pool.hpp"
-#include "service/server/jobs/input_target.hpp"
 
 namespace octopair::v1 {
 class JobSpec;
@@ -18,6 +18,19 @@ class ObjectSet;
 }  // namespace octopair::v1
 
 namespace octopair::service {
+
+/// Receives the input of a job, piece by piece.
+class InputTarget {
+public:
+    virtual ~InputTarget() = default;
+    /// Throws: Error{bad_input} if `data` is longer than missing().
+    virtual void append(std::span<const std::byte> data) = 0;
+    /// Returns the number of bytes that were not appended yet.
+    virtual std::uint64_t missing() const = 0;
+};
+
+/// Throws: Error{bad_input} if `data` has more than `missing` bytes.
+void check_fits(std::span<const std::byte> data, std::uint64_t missing);
 
 class UploadedInput final : public InputTarget {
 public:

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 
 namespace octopair::service {
 

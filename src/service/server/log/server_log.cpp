@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "service/protocol/errors.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/server/jobs/server_job.hpp"
-#include "service/server/log/event.hpp"
+#include "service/server/log/log_line.hpp"
 
 namespace octopair::service {
 
@@ -45,34 +45,34 @@ void ServerLog::job_state_changed(const ServerJob& job, std::optional<v1::JobSta
                                  {"seconds", seconds},
                                  {"outcome", outcome_of(to)}});
     if (report.has_failure()) fields.push_back({"reason", report.failure().message()});
-    log_event(*log_, level, "job ended", fields);
+    log_line(*log_, level, "job ended", fields);
 }
 
 void ServerLog::job_submitted(const ServerJob& job, const grpc::ServerContextBase& call) {
     const auto level = level_of(job);
     if (!is_logged(*log_, level)) return;
-    log_event(*log_, level, "submit",
-              {{"id", job.spec().id()},
-               {"owner", job.owner()},
-               {"peer", call.peer()},
-               {"objects", object_count(job.spec())},
-               {"bytes", input_bytes(job.spec())}});
+    log_line(*log_, level, "submit",
+             {{"id", job.spec().id()},
+              {"owner", job.owner()},
+              {"peer", call.peer()},
+              {"objects", object_count(job.spec())},
+              {"bytes", input_bytes(job.spec())}});
 }
 
 void ServerLog::job_asked(const char* call, const ServerJob& job, const Asker& asker) {
-    log_event(*log_, LogLevel::info, call,
-              {{"id", job.spec().id()}, {"owner", job.owner()}, {"client", asker.client}, {"peer", asker.peer}});
+    log_line(*log_, LogLevel::info, call,
+             {{"id", job.spec().id()}, {"owner", job.owner()}, {"client", asker.client}, {"peer", asker.peer}});
 }
 
 void ServerLog::result_sent(const ServerJob& job, const Asker& asker, const Sent& sent) {
-    log_event(*log_, LogLevel::info, "result",
-              {{"id", job.spec().id()},
-               {"owner", job.owner()},
-               {"client", asker.client},
-               {"peer", asker.peer},
-               {"offset", sent.offset},
-               {"bytes", sent.bytes},
-               {"outcome", sent.outcome}});
+    log_line(*log_, LogLevel::info, "result",
+             {{"id", job.spec().id()},
+              {"owner", job.owner()},
+              {"client", asker.client},
+              {"peer", asker.peer},
+              {"offset", sent.offset},
+              {"bytes", sent.bytes},
+              {"outcome", sent.outcome}});
 }
 
 void ServerLog::limit_refused(const std::string& client, const LimitError& error) {
@@ -83,20 +83,20 @@ void ServerLog::limit_refused(const std::string& client, const LimitError& error
     std::vector<Field> fields = {
         {"owner", client}, {"limit", error.name()}, {"allowed", error.allowed()}, {"reason", error.what()}};
     if (*left_out > 0) fields.push_back({"unreported", *left_out});
-    log_event(*log_, LogLevel::warning, "refused", fields);
+    log_line(*log_, LogLevel::warning, "refused", fields);
 }
 
 void ServerLog::connections_refused(std::uint64_t allowed, std::uint64_t refused) {
-    log_event(*log_, LogLevel::warning, "refused",
-              {{"limit", "connections"},
-               {"allowed", allowed},
-               {"reason", std::to_string(refused) + " connections refused since the start"}});
+    log_line(*log_, LogLevel::warning, "refused",
+             {{"limit", "connections"},
+              {"allowed", allowed},
+              {"reason", std::to_string(refused) + " connections refused since the start"}});
 }
 
 void ServerLog::connected(const std::string& peer, const std::string& client) {
     std::vector<Field> fields = {{"peer", peer}};
     if (!client.empty()) fields.push_back({"client", client});
-    log_event(*log_, LogLevel::info, "connected", fields);
+    log_line(*log_, LogLevel::info, "connected", fields);
 }
 
 void ServerLog::call_refused(const Asker& asker, const grpc::Status& why) {
@@ -110,7 +110,7 @@ void ServerLog::call_refused(const Asker& asker, const grpc::Status& why) {
         if (!left_out) return;
         if (*left_out > 0) fields.push_back({"unreported", *left_out});
     }
-    log_event(*log_, going ? LogLevel::debug : LogLevel::warning, "call refused", fields);
+    log_line(*log_, going ? LogLevel::debug : LogLevel::warning, "call refused", fields);
 }
 
 void ServerLog::call_failed(const Asker& asker, const grpc::Status& why) {
@@ -118,11 +118,11 @@ void ServerLog::call_failed(const Asker& asker, const grpc::Status& why) {
     if (!left_out) return;
     std::vector<Field> fields = {{"client", asker.client}, {"peer", asker.peer}, {"reason", why.error_message()}};
     if (*left_out > 0) fields.push_back({"unreported", *left_out});
-    log_event(*log_, LogLevel::warning, "call failed", fields);
+    log_line(*log_, LogLevel::warning, "call failed", fields);
 }
 
 void ServerLog::drain_asked(const Asker& asker) {
-    log_event(*log_, LogLevel::info, "drain", {{"client", asker.client}, {"peer", asker.peer}});
+    log_line(*log_, LogLevel::info, "drain", {{"client", asker.client}, {"peer", asker.peer}});
 }
 
 }  // namespace octopair::service

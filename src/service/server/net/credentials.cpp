@@ -11,9 +11,8 @@
 
 #include "base/descriptor.hpp"
 #include "octopair/error.hpp"
-#include "service/protocol/certificate.hpp"
-#include "service/protocol/private_file.hpp"
-#include "service/server/log/event.hpp"
+#include "service/protocol/credential_files.hpp"
+#include "service/server/log/log_line.hpp"
 
 namespace octopair::service {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "octopair/error.hpp"
-#include "service/protocol/private_file.hpp"
+#include "service/protocol/credential_files.hpp"
 
 namespace octopair::service {
 

@@ -14,22 +14,50 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "base/memory.hpp"
 #include "octopair/error.hpp"
 #include "octopair/scene.hpp"
-#include "service/server/scenes/step_snapshot.hpp"
+#include "service/server/jobs/budget.hpp"
+#include "service/server/net/caller.hpp"
 
 namespace octopair::v1 {
 class SceneReport;
 }  // namespace octopair::v1
 
 namespace octopair::service {
+
+/// Numbers of a step, and of the scene after it.
+struct StepNumbers {
+    std::uint64_t step = 0;  ///< the first step is 1; 0: no step yet
+    std::uint64_t objects = 0;
+    std::uint64_t pairs = 0;
+    std::uint64_t began = 0;
+    std::uint64_t ended = 0;
+    double seconds = 0;
+};
+
+/// A copy of the state of a scene after a step, for the watchers of the scene. Not changed after it is made, so any thread may read it.
+struct StepSnapshot {
+    Budget::Reservation memory;
+    StepNumbers numbers;
+    Precision precision = Precision::float32;
+    std::uint64_t indices = 0;
+    std::uint64_t listed = 0;    ///< number of pairs in `data`
+    std::uint64_t pairs_at = 0;  ///< offset of the first pair in `data`, in bytes
+    Buffer<std::byte> data;      ///< presence, boxes and pairs, as in octopair.proto's SceneSnapshot
+
+    /// Returns whether the snapshot has as many pairs as a watcher with this limit gets.
+    bool lists(std::uint64_t pair_limit) const { return listed >= pair_limit || listed == numbers.pairs; }
+};
 
 class ResultReader;
 
@@ -126,6 +154,22 @@ private:
     std::vector<Waiting> waiting_;
     std::weak_ptr<const StepSnapshot> latest_;
     bool closed_ = false;
+};
+
+/// The running scenes of a server, by id. Thread safety: any thread may call it.
+class SceneTable {
+public:
+    void enter(const std::shared_ptr<ScenePublisher>& scene);
+    void remove(const ScenePublisher& scene);
+    /// Throws: Error{bad_input} if the caller sees no scene `id`.
+    std::shared_ptr<ScenePublisher> find(const Caller& caller, const std::string& id) const;
+    /// Returns the scenes that the caller sees with ids greater than `after`, ascending by id, at most `most` of them.
+    std::vector<std::shared_ptr<ScenePublisher>> of(const Caller& caller, const std::string& after,
+                                                    std::size_t most) const;
+
+private:
+    mutable std::mutex mutex_;
+    std::map<std::string, std::shared_ptr<ScenePublisher>> scenes_;
 };
 
 }  // namespace octopair::service

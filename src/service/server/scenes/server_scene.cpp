@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "scene/recording/replay.hpp"
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 
 namespace octopair::service {
 

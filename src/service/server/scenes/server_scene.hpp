@@ -9,7 +9,7 @@
 
 #include "octopair/scene.hpp"
 #include "scene/recording/recording_reader.hpp"
-#include "service/server/scenes/step_snapshot.hpp"
+#include "service/server/scenes/scene_publisher.hpp"
 #include "service/server/server_context.hpp"
 
 namespace octopair::service {

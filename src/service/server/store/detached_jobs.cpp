@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "base/memory.hpp"
 #include "octopair/error.hpp"
+#include "service/protocol/errors.hpp"
+#include "service/protocol/job_hash.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/protocol/status.hpp"
-#include "service/server/log/event.hpp"
-#include "service/server/store/job_upgrade.hpp"
+#include "service/server/log/log_line.hpp"
+#include "service/server/store/file.hpp"
 
 namespace octopair::service {
 
@@ -44,6 +47,52 @@ void remove_superseded(std::vector<StateFolder::Found>& jobs) {
     if (kept != jobs.end()) (void)sync_folder_of(kept->base);
     jobs.erase(kept, jobs.end());
     std::reverse(jobs.begin(), jobs.end());
+}
+
+/// Writes the new file. Returns the contents besides the input.
+StoredSpec rewrite(const File& from, const File& to, const StoredSpec& old) {
+    StoredSpec fresh = old;
+    fresh.algorithm = algorithm_version;
+    const std::string block = encode_block(fresh);
+    fresh.input_at = block.size();
+    const std::uint64_t bytes = input_bytes(old.spec);
+    to.reserve(job_file_bytes(block, bytes));
+    to.write(0, std::as_bytes(std::span(block)));
+    JobHash old_hash(old.spec, old.algorithm), fresh_hash(old.spec);
+    Buffer<std::byte> piece(piece_bytes);
+    for (std::uint64_t done = 0; done < bytes;) {
+        const auto part = piece.span().first(std::size_t(std::min<std::uint64_t>(bytes - done, piece.size())));
+        from.read(old.input_at + done, part);
+        old_hash.add(part);
+        fresh_hash.add(part);
+        to.write(fresh.input_at + done, part);
+        done += part.size();
+    }
+    if (old_hash.digest() != old.hash)
+        fail_damaged(from.name(), "the hash of the input does not match the submitted job");
+    fresh.hash = fresh_hash.digest();
+    const std::string end = encode_job_end(block, fresh.hash);
+    to.write(fresh.input_at + bytes, std::as_bytes(std::span(end)));
+    return fresh;
+}
+
+/// Converts the file of a job that was submitted to a server with another algorithm version (job_hash.hpp), so that this server runs it.
+/// Rewrites BASE.job with the algorithm version of this program, and its hash. On return the new file has replaced the old one, and is on
+/// the disk. Returns the contents besides the input.
+/// Requires: the job has no result.
+/// Throws: Error{io_failed} if the input does not match the hash of the old version; then, and after any other error, the old file stays.
+StoredSpec upgrade_job(const std::string& base, const StoredSpec& old) {
+    const std::string path = base + ".job";
+    const File from(path, File::Mode::read);
+    const File to(path + ".part", File::Mode::create);
+    try {
+        StoredSpec fresh = rewrite(from, to, old);
+        to.finish(path);
+        return fresh;
+    } catch (...) {
+        remove_file(to.path());
+        throw;
+    }
 }
 
 }  // namespace

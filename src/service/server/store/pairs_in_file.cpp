@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "octopair/error.hpp"
-#include "service/protocol/limit_error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/server/jobs/job_record.hpp"
 

@@ -18,7 +18,7 @@
 
 #include "base/descriptor.hpp"
 #include "octopair/error.hpp"
-#include "service/server/log/event.hpp"
+#include "service/server/log/log_line.hpp"
 #include "service/server/store/file.hpp"
 
 namespace octopair::service {

@@ -14,18 +14,44 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/descriptor.hpp"
+#include "base/work_queue.hpp"
 #include "octopair/error.hpp"
 #include "service/server/jobs/budget.hpp"
-#include "service/server/store/disk_queue.hpp"
 #include "service/server/store/state_format.hpp"
 
 namespace octopair::service {
+
+/// Tasks that wait for disks, run one after another on a thread of their own, so that no thread of gRPC waits.
+class DiskQueue {
+public:
+    /// Must not throw.
+    using DiskTask = std::function<void()>;
+
+    DiskQueue() : thread_([this] { tasks_.run([](const DiskTask& task) { task(); }); }) {}
+    DiskQueue(const DiskQueue&) = delete;
+    DiskQueue& operator=(const DiskQueue&) = delete;
+    /// Runs all tasks that were added.
+    ~DiskQueue() {
+        tasks_.finish();
+        thread_.join();
+    }
+
+    /// Thread safety: may be called from any thread.
+    void add(DiskTask task) { tasks_.add(std::move(task)); }
+
+private:
+    WorkQueue<DiskTask> tasks_;
+    std::thread thread_;
+};
 
 class StateFolder {
 public:

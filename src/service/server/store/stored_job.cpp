@@ -6,11 +6,11 @@
 #include "base/memory.hpp"
 #include "base/stop.hpp"
 #include "octopair/error.hpp"
+#include "service/protocol/errors.hpp"
 #include "service/protocol/job_spec.hpp"
-#include "service/protocol/limit_error.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/server/jobs/uploaded_input.hpp"
-#include "service/server/log/event.hpp"
+#include "service/server/log/log_line.hpp"
 
 namespace octopair::service {
 

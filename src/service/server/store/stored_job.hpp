@@ -7,8 +7,8 @@
 #include <string>
 
 #include "service/protocol/job_hash.hpp"
-#include "service/server/jobs/input_target.hpp"
 #include "service/server/jobs/job_record.hpp"
+#include "service/server/jobs/uploaded_input.hpp"
 #include "service/server/store/file.hpp"
 #include "service/server/store/pairs_in_file.hpp"
 #include "service/server/store/state_folder.hpp"

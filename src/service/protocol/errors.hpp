@@ -1,4 +1,4 @@
-// LimitError: an Error{resource_limit} that names the limit of the server that a call exceeds.
+// Errors of a server that a client can tell from others of their code.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 namespace octopair::service {
 
+/// An Error{resource_limit} that names the limit of the server that a call exceeds.
 class LimitError : public Error {
 public:
     /// `name` is the name of the field in the protocol's message Limits. `message` is complete, and contains the limit.
@@ -21,6 +22,12 @@ public:
 private:
     std::string name_;
     std::uint64_t allowed_;
+};
+
+/// An Error{bad_input} because the caller has no such job.
+class NoJobError : public Error {
+public:
+    explicit NoJobError(const std::string& message) : Error(ErrorCode::bad_input, message) {}
 };
 
 }  // namespace octopair::service

@@ -1,11 +1,16 @@
-// Upload: reads the messages with which a client submits a job: first the job spec, then the job's input.
+// Upload and Download: the messages of a job in both directions.
 #pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/status.h>
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 
-#include "service/server/jobs/input_target.hpp"
+#include "service/server/jobs/server_job.hpp"
+#include "service/server/jobs/uploaded_input.hpp"
 
 namespace grpc {
 class ByteBuffer;
@@ -17,6 +22,7 @@ class JobSpec;
 
 namespace octopair::service {
 
+/// Reads the messages with which a client submits a job: first the job spec, then the input of the job.
 class Upload {
 public:
     /// Creates the job and returns the target of its input. Requires: the target lives until the input is complete.
@@ -40,6 +46,29 @@ private:
     InputTarget* target_ = nullptr;  // null before the first message
     std::uint64_t missing_ = 0;      // bytes of the input that were not received yet
     std::size_t new_bytes_ = 0;      // bytes received since take_progress() returned true
+};
+
+/// Makes the messages that send the pairs of a job to a client, starting at a given pair.
+class Download {
+public:
+    explicit Download(std::shared_ptr<ServerJob> job, std::uint64_t offset = 0)
+        : job_(std::move(job)), offset_(offset) {}
+
+    struct Next {
+        enum class Kind : std::uint8_t { wait, message, last } kind = Kind::wait;
+        grpc::ByteBuffer message;  ///< set for `message`, and for `last` if `status` is OK
+        grpc::Status status;       ///< status of the call; set for `last`
+    };
+    /// Returns what to send next: nothing yet, a message, or the last message and the status that ends the call.
+    Next next();
+
+private:
+    Next make_next();
+
+    std::shared_ptr<ServerJob> job_;
+    std::uint64_t offset_;
+    bool head_sent_ = false;
+    double progress_sent_ = 0;
 };
 
 }  // namespace octopair::service
