@@ -4,7 +4,6 @@
 #include <cstdlib>
 
 #include "octopair/error.hpp"
-#include "viewer/scene/collision_table.hpp"
 #include "viewer/scene/frame_answers.hpp"
 
 namespace {

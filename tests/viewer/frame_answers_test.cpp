@@ -6,10 +6,7 @@
 #include <set>
 
 #include "octopair/error.hpp"
-#include "viewer/scene/collision_table.hpp"
 #include "viewer/scene/frame_answers.hpp"
-#include "viewer/scene/object_answers.hpp"
-#include "viewer/scene/octant_answers.hpp"
 #include "viewer/shown_frames.hpp"
 
 namespace octopair::test {

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "octopair/error.hpp"
-#include "viewer/server/messages.hpp"
 #include "viewer/server/page_server.hpp"
+#include "viewer/server/source.hpp"
 
 namespace octopair::cli {
 

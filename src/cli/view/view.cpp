@@ -20,8 +20,8 @@
 #include "io/formats/format_choice.hpp"
 #include "io/results/result_file.hpp"
 #include "viewer/scene/page_file.hpp"
-#include "viewer/server/messages.hpp"
 #include "viewer/server/page_server.hpp"
+#include "viewer/server/source.hpp"
 
 namespace octopair::cli {
 

@@ -1,9 +1,7 @@
 #include "viewer/live/live_source.hpp"
 
 #include "octopair/version.hpp"
-#include "viewer/scene/collision_table.hpp"
-#include "viewer/scene/object_answers.hpp"
-#include "viewer/scene/octant_answers.hpp"
+#include "viewer/scene/frame_answers.hpp"
 
 namespace octopair::viewer {
 

@@ -8,7 +8,6 @@
 #include "viewer/live/live_feed.hpp"
 #include "viewer/scene/frame_answers.hpp"
 #include "viewer/scene/scene_contents.hpp"
-#include "viewer/server/messages.hpp"
 #include "viewer/server/source.hpp"
 
 namespace octopair::viewer {

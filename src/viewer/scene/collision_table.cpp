@@ -1,8 +1,8 @@
-#include "viewer/scene/collision_table.hpp"
-
+// The table of collisions of a frame.
 #include <algorithm>
 
 #include "octopair/error.hpp"
+#include "viewer/scene/frame_answers.hpp"
 
 namespace octopair::viewer {
 

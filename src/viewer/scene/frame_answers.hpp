@@ -1,11 +1,14 @@
-// Answers about the boxes and pairs of one frame, for scenes of files and for live scenes alike.
+// Answers about one frame, for scenes of files and for live scenes alike.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "octopair/octants.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/scene/shown_objects.hpp"
 #include "viewer/server/answer.hpp"
@@ -55,5 +58,39 @@ bool matches(const SceneContents& contents, std::uint32_t object, std::string_vi
 Answer near_answer(const ShownFrame& frame, const Box3d& region);
 /// Returns the region that the parameters `min` and `max` give. Throws: Error{bad_input}.
 Box3d region_of(const Address& address);
+
+// object_answers.cpp
+
+/// Returns what is known about an object; nothing if there is no such object. `octants` may be null.
+std::optional<Answer> object_answer(const ShownFrame& frame, std::uint32_t object, const Octants* octants);
+/// Returns the objects whose name or index has `text`, the best first.
+Answer search_answer(const ShownFrame& frame, std::string_view text);
+
+// collision_table.cpp
+
+/// Selects rows of the table of collisions.
+struct RowRequest {
+    std::uint64_t from = 0, count = 100;
+    enum class Sort : std::uint8_t { pair, depth, began } sort = Sort::pair;
+    std::optional<std::uint32_t> object;
+    std::string text;
+};
+/// Returns the selection that the parameters give. Throws: Error{bad_input} for an invalid parameter.
+RowRequest row_request(const Address& address);
+/// Returns the selected rows, and the number of all rows that match.
+Answer collision_rows(const ShownFrame& frame, const RowRequest& request);
+
+// octant_answers.cpp
+
+/// Returns the numbers of octants, leaves and listed octants of each level.
+Answer octant_summary(const Octants& octants);
+/// Returns the first octants of a level, relative to `origin`.
+Answer octant_level(const Octants& octants, unsigned level, const Point3d& origin);
+/// Returns the octants of an octree of the boxes that exist in the frame, on `threads` threads; 0: one per core.
+Octants octants_of(const ShownFrame& frame, unsigned threads = 0);
+/// Returns for each object the level of the octant in which its box begins; 0 for objects that do not exist.
+std::vector<std::uint8_t> levels_of(const FrameData& data, const Octants& octants);
+/// Returns the code of the octant in which an object's box begins. Requires: the object exists in the frame.
+OctalCode home_code(const FrameData& data, std::uint32_t object, const Octants& octants);
 
 }  // namespace octopair::viewer

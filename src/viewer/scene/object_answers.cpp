@@ -1,8 +1,7 @@
-#include "viewer/scene/object_answers.hpp"
-
+// Answers about single objects of a frame.
 #include <algorithm>
 
-#include "viewer/scene/octant_answers.hpp"
+#include "viewer/scene/frame_answers.hpp"
 
 namespace octopair::viewer {
 

@@ -1,7 +1,8 @@
-#include "viewer/scene/octant_answers.hpp"
-
+// Answers about the octants of a frame.
 #include <algorithm>
 #include <optional>
+
+#include "viewer/scene/frame_answers.hpp"
 
 namespace octopair::viewer {
 

@@ -8,10 +8,8 @@
 
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
-#include "viewer/scene/collision_table.hpp"
-#include "viewer/scene/object_answers.hpp"
-#include "viewer/scene/octant_answers.hpp"
-#include "viewer/server/messages.hpp"
+#include "viewer/scene/frame_answers.hpp"
+#include "viewer/server/source.hpp"
 
 namespace octopair::viewer {
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "viewer/server/answer.hpp"
+
 namespace octopair::viewer {
 
 // Made by viewer/embed.mjs: the page, compressed by gzip.
@@ -13,8 +15,10 @@ extern const std::size_t compressed_page_size;
 extern const unsigned char compressed_page_bytes[];
 
 /// Returns the page, compressed by gzip.
-std::string_view compressed_page();
+inline std::string_view compressed_page() {
+    return {reinterpret_cast<const char*>(compressed_page_bytes), compressed_page_size};
+}
 /// Returns the page. Throws: std::bad_alloc.
-std::string page();
+inline std::string page() { return gunzip(compressed_page(), page_size); }
 
 }  // namespace octopair::viewer

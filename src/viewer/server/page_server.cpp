@@ -21,7 +21,7 @@
 
 #include "octopair/error.hpp"
 #include "viewer/server/connection.hpp"
-#include "viewer/server/messages.hpp"
+#include "viewer/server/source.hpp"
 
 namespace octopair::viewer {
 

@@ -3,14 +3,28 @@
 // Threads   get() is called by one thread at a time; live_frame() and describe() by the thread of the connections.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "viewer/server/answer.hpp"
 
 namespace octopair::viewer {
+
+// Messages to pages over the WebSocket (viewer/protocol.md), as JSON.
+
+/// `done`: from 0 to 1.
+std::string progress_message(std::string_view what, double done);
+std::string ready_message();
+std::string failed_message(std::string_view why);
+/// The watched server does not answer, and is asked again.
+std::string waiting_message(std::string_view why);
+/// `done`: number of frames that timeline.json has.
+std::string timeline_message(std::uint64_t done);
+std::string closed_message();
 
 /// A live frame that is sent to several pages.
 using Message = std::shared_ptr<const std::string>;

@@ -1,4 +1,4 @@
-#include "viewer/server/messages.hpp"
+#include "viewer/server/source.hpp"
 
 #include <nlohmann/json.hpp>
 
