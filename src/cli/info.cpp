@@ -230,7 +230,7 @@ std::string describe_files(const std::vector<std::string>& paths, const std::sto
 #ifdef OCTOPAIR_WITH_PIPELINE
         make_shaped(file.set, {}, stop);
 #endif
-        if (const auto fault = file.set.find_fault()) throw Error(ErrorCode::bad_input, fault->message);
+        if (const auto invalid = file.set.find_invalid_box()) throw Error(ErrorCode::bad_input, invalid->message);
         if (!text.empty()) text += '\n';
         text += describe(file);
     }

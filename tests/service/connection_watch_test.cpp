@@ -29,7 +29,7 @@ protected:
     void get_cut(const std::string& address, int port) {
         connect(address, port);
         ASSERT_EQ(ready_after(0ms), 1u);
-        refuse_calls(address, port, terms_.max_refused_calls + 1);
+        refuse_calls(address, port, limits_.max_refused_calls + 1);
         EXPECT_EQ(watch_.unknown(), 0u);
     }
     std::size_t ready_after(std::chrono::milliseconds time) {
@@ -37,8 +37,8 @@ protected:
         return watch_.take_ready(now_).size();
     }
 
-    const ConnectionWatch::Terms terms_;
-    ConnectionWatch watch_{terms_};
+    const ConnectionLimits limits_;
+    ConnectionWatch watch_{limits_};
     ConnectionWatch::Clock::time_point now_ = ConnectionWatch::Clock::now();
     std::vector<Descriptor> others_;
 };
@@ -46,7 +46,7 @@ protected:
 TEST_F(PacedConnections, WaitForNothingAtFirst) {
     for (int port = 1; port <= 20; ++port) connect("a", port);
     EXPECT_EQ(ready_after(0ms), 20u);
-    refuse_calls("a", 1, terms_.max_refused_calls);
+    refuse_calls("a", 1, limits_.max_refused_calls);
     connect("a", 21);
     EXPECT_EQ(ready_after(0ms), 1u);
     EXPECT_EQ(watch_.waiting(), 0u);
@@ -57,11 +57,11 @@ TEST_F(PacedConnections, FollowEachOtherSlowlyAfterACut) {
     for (int port = 2; port <= 4; ++port) connect("a", port);
     EXPECT_EQ(watch_.waiting(), 3u);
     EXPECT_EQ(ready_after(0ms), 0u);
-    EXPECT_EQ(ready_after(terms_.interval - 1ms), 0u);
+    EXPECT_EQ(ready_after(limits_.interval - 1ms), 0u);
     EXPECT_EQ(ready_after(1ms), 1u);
-    EXPECT_EQ(ready_after(terms_.interval / 2), 0u);
-    EXPECT_EQ(ready_after(terms_.interval), 1u);
-    EXPECT_EQ(ready_after(terms_.interval), 1u);
+    EXPECT_EQ(ready_after(limits_.interval / 2), 0u);
+    EXPECT_EQ(ready_after(limits_.interval), 1u);
+    EXPECT_EQ(ready_after(limits_.interval), 1u);
     EXPECT_EQ(watch_.waiting(), 0u);
     EXPECT_EQ(watch_.make_known(name("a", 4), {"client", 4}, now_), ConnectionWatch::Admission::known_now);
 }
@@ -76,7 +76,7 @@ TEST_F(PacedConnections, OfOtherAddressesDoNotWait) {
 
 TEST_F(PacedConnections, DoNotWaitWhenTheCutIsLongAgo) {
     get_cut("a", 1);
-    now_ += terms_.remembered + 1ms;
+    now_ += limits_.remembered + 1ms;
     (void)watch_.check(now_);
     for (int port = 2; port <= 9; ++port) connect("a", port);
     EXPECT_EQ(ready_after(0ms), 8u);
@@ -103,7 +103,7 @@ protected:
         const std::uint64_t number = others_.size() + 1;
         const std::string peer = "peer " + std::to_string(number);
         watch_.add(std::move(connection), {peer, "address"}, now_);
-        now_ += terms_.interval;
+        now_ += limits_.interval;
         for (Descriptor& ready : watch_.take_ready(now_)) connections_.push_back(std::move(ready));
         others_.push_back(std::move(other));
         EXPECT_TRUE(watch_.note_begin(number, now_));
@@ -124,8 +124,8 @@ protected:
         }
     }
 
-    const ConnectionWatch::Terms terms_;
-    ConnectionWatch watch_{terms_};
+    const ConnectionLimits limits_;
+    ConnectionWatch watch_{limits_};
     ConnectionWatch::Clock::time_point now_ = ConnectionWatch::Clock::now();
     Descriptor listener_;
     sockaddr_in address_{};
@@ -134,7 +134,7 @@ protected:
 
 TEST_F(ResettingConnections, AreCutForCallsThatDoNotEnd) {
     const std::uint64_t one = connect("anna"), other = connect("anna");
-    for (double i = 0; i < terms_.max_open_calls; ++i) EXPECT_TRUE(watch_.note_begin(one, now_));
+    for (double i = 0; i < limits_.max_open_calls; ++i) EXPECT_TRUE(watch_.note_begin(one, now_));
     watch_.note_end(one, false, now_);
     EXPECT_TRUE(watch_.note_begin(one, now_));
     EXPECT_FALSE(is_cut(one));
@@ -147,7 +147,7 @@ TEST_F(ResettingConnections, AreCutForCallsThatDoNotEnd) {
 /// gRPC does not tell of the ends of some calls.
 TEST_F(ResettingConnections, AreNotCutForCallsWhoseEndIsNotTold) {
     const std::uint64_t anna = connect("anna");
-    for (double i = 0; i < 3 * terms_.max_open_calls; ++i) {
+    for (double i = 0; i < 3 * limits_.max_open_calls; ++i) {
         EXPECT_TRUE(watch_.note_begin(anna, now_));
         now_ += 1s;
     }
@@ -156,8 +156,8 @@ TEST_F(ResettingConnections, AreNotCutForCallsWhoseEndIsNotTold) {
 
 TEST_F(ResettingConnections, AreCutForManyResets) {
     const std::uint64_t anna = connect("anna"), berta = connect("berta");
-    reset_calls(berta, terms_.max_resets);
-    reset_calls(anna, terms_.max_resets);
+    reset_calls(berta, limits_.max_resets);
+    reset_calls(anna, limits_.max_resets);
     EXPECT_FALSE(is_cut(anna));
     reset_calls(anna, 1);
     EXPECT_TRUE(is_cut(anna));
@@ -168,7 +168,7 @@ TEST_F(ResettingConnections, AreCutForManyResets) {
 TEST_F(ResettingConnections, AreNotCutForSlowResets) {
     const std::uint64_t anna = connect("anna");
     for (int second = 0; second < 20; ++second) {
-        reset_calls(anna, terms_.resets_per_second);
+        reset_calls(anna, limits_.resets_per_second);
         now_ += 1s;
     }
     EXPECT_FALSE(is_cut(anna));
@@ -176,30 +176,30 @@ TEST_F(ResettingConnections, AreNotCutForSlowResets) {
 
 TEST_F(ResettingConnections, AreNotCutForThoseOfOthersOfTheirClient) {
     const std::uint64_t good = connect("anna"), bad = connect("anna");
-    reset_calls(bad, terms_.max_resets + 1);
+    reset_calls(bad, limits_.max_resets + 1);
     EXPECT_TRUE(is_cut(bad));
-    reset_calls(good, terms_.few_resets);
+    reset_calls(good, limits_.tolerated_resets);
     EXPECT_FALSE(is_cut(good));
     reset_calls(good, 1);
     EXPECT_TRUE(is_cut(good));
 }
 
 TEST_F(ResettingConnections, AreAdmittedAgainAfterAPause) {
-    reset_calls(connect("anna"), terms_.max_resets + 1);
+    reset_calls(connect("anna"), limits_.max_resets + 1);
     EXPECT_TRUE(is_cut(connect("anna", ConnectionWatch::Admission::paused)));
     EXPECT_FALSE(is_cut(connect("berta")));
-    now_ += terms_.pause;
+    now_ += limits_.pause;
     const std::uint64_t again = connect("anna");
     EXPECT_FALSE(is_cut(again));
-    reset_calls(again, terms_.max_resets - 10);
+    reset_calls(again, limits_.max_resets - 10);
     EXPECT_TRUE(is_cut(again)) << "the earlier resets are forgotten";
 }
 
 TEST_F(ResettingConnections, DoNotCountCallsThatEndWithTheirConnection) {
     const std::uint64_t closed = connect("anna"), open = connect("anna");
     others_.at(closed - 1) = {};
-    reset_calls(closed, terms_.max_resets);
-    reset_calls(open, terms_.few_resets + 1);
+    reset_calls(closed, limits_.max_resets);
+    reset_calls(open, limits_.tolerated_resets + 1);
     EXPECT_FALSE(is_cut(open));
 }
 

@@ -1,4 +1,4 @@
-// FakeFinder: a scene in memory for tests of SceneSource, whose pairs are found by brute force; and readers of its answers.
+// FakeFinder: a scene in memory for tests of FrameSource, whose pairs are found by brute force; and readers of its answers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,14 +13,14 @@
 #include <vector>
 
 #include "octopair/error.hpp"
-#include "viewer/scene/scene_source.hpp"
+#include "viewer/scene/frame_source.hpp"
 #include "viewer/shown_frames.hpp"
 
 namespace octopair::test {
 
 using viewer::Address;
+using viewer::FrameSource;
 using viewer::SceneContents;
-using viewer::SceneSource;
 
 /// Finds the pairs of frames in memory by brute force. Fails if two threads use it at once.
 class FakeFinder final : public viewer::FrameFinder {
@@ -93,12 +93,12 @@ inline SceneContents contents_of(std::uint64_t objects, bool moving) {
     return contents;
 }
 
-inline std::string body_of(SceneSource& source, const std::string& address) {
+inline std::string body_of(FrameSource& source, const std::string& address) {
     const auto answer = source.get(*Address::parse('/' + address));
     return answer ? answer->body : "none";
 }
-inline Json json_of(SceneSource& source, const std::string& address) { return Json::parse(body_of(source, address)); }
-inline std::vector<Pair> pairs_of(SceneSource& source, const std::string& address) {
+inline Json json_of(FrameSource& source, const std::string& address) { return Json::parse(body_of(source, address)); }
+inline std::vector<Pair> pairs_of(FrameSource& source, const std::string& address) {
     return array_of<Pair>(body_of(source, address));
 }
 

@@ -106,7 +106,7 @@ private:
     std::vector<Box3d> boxes_;
     std::vector<std::uint8_t> exists_;
     std::vector<Pair> pairs_;
-    std::vector<LiveState::Event> events_;
+    std::vector<LiveState::PairEvent> events_;
     std::uint64_t steps_ = 0;
 };
 
@@ -152,7 +152,7 @@ TEST(LiveFeed, OfMoreObjectsThanAreShown) {
     }
 }
 
-LiveState state_of(const std::vector<Box3d>& boxes, std::vector<LiveState::Event> events, std::uint64_t pairs) {
+LiveState state_of(const std::vector<Box3d>& boxes, std::vector<LiveState::PairEvent> events, std::uint64_t pairs) {
     LiveState state;
     state.boxes = boxes;
     state.events = std::move(events);

@@ -70,7 +70,7 @@ std::map<std::string, std::string> data_of(const std::string& page) {
     return data;
 }
 
-std::string page_of(SceneSource& source, std::uint64_t most = viewer::max_page_bytes) {
+std::string page_of(FrameSource& source, std::uint64_t most = viewer::max_page_bytes) {
     std::string page;
     write_page(
         source, [&](std::string_view text) { page += text; }, most);
@@ -88,7 +88,7 @@ std::string without_data(std::string page) {
 TEST(PageFile, HasTheAnswersOfTheServer) {
     for (const bool moving : {false, true}) {
         FakeFinder finder(20, moving ? 6 : 1, 70);
-        SceneSource source(contents_of(70, moving), finder, 50), exported(contents_of(70, moving), finder, 50);
+        FrameSource source(contents_of(70, moving), finder, 50), exported(contents_of(70, moving), finder, 50);
         source.load({});
         exported.load({});
         if (moving) {
@@ -135,7 +135,7 @@ TEST(PageFile, HasNoTimes) {
         finder.seconds = seconds;
         SceneContents contents = contents_of(60, true);
         contents.facts = {{"seconds.read", seconds}, {"format", 0, "npy"}};
-        SceneSource source(std::move(contents), finder);
+        FrameSource source(std::move(contents), finder);
         source.load({});
         source.count_frames({}, {});
         EXPECT_EQ(json_of(source, "view.json")["summary"]["seconds"]["read"], seconds);
@@ -148,8 +148,8 @@ TEST(PageFile, HasNoTimes) {
 
 TEST(PageFile, LeavesOutFramesBeyondTheLimit) {
     FakeFinder finder(21, 20, 60);
-    SceneSource whole(contents_of(60, true), finder), part(contents_of(60, true), finder);
-    for (SceneSource* source : {&whole, &part}) {
+    FrameSource whole(contents_of(60, true), finder), part(contents_of(60, true), finder);
+    for (FrameSource* source : {&whole, &part}) {
         source->load({});
         source->count_frames({}, {});
     }
@@ -173,7 +173,7 @@ TEST(PageFile, LeavesOutFramesBeyondTheLimit) {
 
 TEST(PageFile, RefusesAFirstFrameBeyondTheLimit) {
     FakeFinder finder(22, 3, 60);
-    SceneSource source(contents_of(60, true), finder);
+    FrameSource source(contents_of(60, true), finder);
     source.load({});
     bool wrote = false;
     EXPECT_THROW(write_page(
@@ -190,7 +190,7 @@ TEST(PageFile, TextsOfTheInputCannotBecomePage) {
         contents.names.assign(40, text);
         contents.notices = {text};
         contents.unit = text;
-        SceneSource source(std::move(contents), finder);
+        FrameSource source(std::move(contents), finder);
         source.load({});
         return page_of(source);
     };
@@ -209,7 +209,7 @@ TEST(PageFile, SceneWithShapes) {
     contents.poses.resize(4);
     contents.poses[2].rows = {{{0, -1, 0, 5}, {1, 0, 0, 6}, {0, 0, 1, 7}}};
     contents.groups = {1, 2, 4, 8};
-    SceneSource source(contents, finder);
+    FrameSource source(contents, finder);
     source.load({});
     const Json view = json_of(source, "view.json");
     std::vector<std::uint32_t> shown = {0, 1, 2, 3};

@@ -41,11 +41,11 @@ public:
             group_.together([&] { read(); });
             searchers_.compare_inputs(run_);
             search_ = searchers_.make_search(run_);
-            if (report_.frames > 1) refuse_faults();  // before anything of the first frames is written
+            if (report_.frames > 1) refuse_invalid_boxes();  // before anything of the first frames is written
             try {
                 search_frames();
             } catch (const Error& error) {
-                if (error.code() == ErrorCode::bad_input) refuse_faults();
+                if (error.code() == ErrorCode::bad_input) refuse_invalid_boxes();
                 // If boxes changed, an engine or a check may report a contradiction. The change is then the reason.
                 if (error.code() == ErrorCode::engine_failed && group_.ranks() == 1) run_.check_inputs();
                 throw;
@@ -105,12 +105,12 @@ private:
     }
 
     /// Repeats an engine's error about a box with the name of its file.
-    void refuse_faults() {
+    void refuse_invalid_boxes() {
         group_.together([&] {
             std::uint64_t before = 0;
             for (const InputSet* set : {&inputs_.first, &inputs_.second}) {
-                if (const auto fault = set->find_fault())
-                    group_.refuse_object(before + fault->position, fault->message);
+                if (const auto invalid = set->find_invalid_box())
+                    group_.refuse_object(before + invalid->position, invalid->message);
                 before += set->total * set->scene.frames;
             }
         });

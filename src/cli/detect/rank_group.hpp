@@ -9,7 +9,7 @@
 
 namespace octopair::cli {
 
-/// Facts about the options. Paths of inputs may differ, because hosts may have their files in different folders. So may --threads and
+/// Returns facts about the options. Paths of inputs may differ, because hosts may have their files in different folders. So may --threads and
 /// --quiet.
 Facts option_facts(const DetectRequest& request);
 

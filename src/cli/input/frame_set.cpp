@@ -60,7 +60,7 @@ template <typename Real>
 void FrameSet::read(std::uint64_t frame, std::span<Box<Real>> boxes, const std::stop_token& stop) const {
     if (moving_.empty()) {
         copy_boxes(still_.scene.frame(0).boxes, boxes);
-        if (const auto fault = still_.find_fault()) throw Error(ErrorCode::bad_input, fault->message);
+        if (const auto invalid = still_.find_invalid_box()) throw Error(ErrorCode::bad_input, invalid->message);
         return;
     }
     for (const MovingPart& part : moving_) {

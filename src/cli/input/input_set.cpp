@@ -44,7 +44,7 @@ Box3d InputSet::bounds() const {
     return bounds;
 }
 
-std::optional<InputSet::Fault> InputSet::find_fault() const {
+std::optional<InputSet::InvalidBox> InputSet::find_invalid_box() const {
     scene.check_mapped();
     const auto fault = io::find_invalid_box(scene);
     if (!fault) return std::nullopt;
@@ -53,7 +53,7 @@ std::optional<InputSet::Fault> InputSet::find_fault() const {
     std::uint64_t object = begin + fault->object;
     for (const Part& part : parts) {
         if (object < part.objects)
-            return Fault{position, fmt::format("{}: {}object {}: {}", part.path, frame, object, fault->what)};
+            return InvalidBox{position, fmt::format("{}: {}object {}: {}", part.path, frame, object, fault->what)};
         object -= part.objects;
     }
     return std::nullopt;

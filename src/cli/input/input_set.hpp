@@ -51,13 +51,13 @@ struct InputSet {
     /// Returns the smallest box that contains all boxes. For an empty set, its minima are infinite, and its maxima -infinite.
     Box3d bounds() const;
     /// The first invalid box of a set.
-    struct Fault {
+    struct InvalidBox {
         std::uint64_t position;  ///< frame * total + object
         std::string message;     ///< with the file and the object
     };
     /// Returns the first invalid box, or nothing if all boxes are valid.
     /// Throws: Error{bad_input} if the file of mapped boxes was changed.
-    std::optional<Fault> find_fault() const;
+    std::optional<InvalidBox> find_invalid_box() const;
 };
 
 /// The sets of a search. `second` is null unless the search is a join.

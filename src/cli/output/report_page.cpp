@@ -140,7 +140,7 @@ std::string ReportView::page() const {
     contents.title = "Collisions";
     contents.notices.clear();  // the report has them
     KnownFrame finder(std::move(data));
-    viewer::SceneSource source(std::move(contents), finder);
+    viewer::FrameSource source(std::move(contents), finder);
     source.load({});
     std::string html;
     try {

@@ -57,7 +57,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
         against.padding = padding.against();
     }
     for (const InputSet* set : {&inputs, &against}) {
-        if (const auto fault = set->find_fault()) throw Error(ErrorCode::bad_input, fault->message);
+        if (const auto invalid = set->find_invalid_box()) throw Error(ErrorCode::bad_input, invalid->message);
     }
     Options options;
     options.order = what.order;

@@ -65,7 +65,8 @@ public:
             search(frame, options, data);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::bad_input) throw;
-            if (const auto fault = inputs_->set.find_fault()) throw Error(ErrorCode::bad_input, fault->message);
+            if (const auto invalid = inputs_->set.find_invalid_box())
+                throw Error(ErrorCode::bad_input, invalid->message);
             throw;
         }
         return data;

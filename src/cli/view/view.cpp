@@ -51,10 +51,10 @@ void wait_until_stopped(const std::stop_token& stop) {
 class Loading {
 public:
     /// Shows the progress on `line` at first.
-    Loading(viewer::SceneSource& source, ProgressLine& line)
+    Loading(viewer::FrameSource& source, ProgressLine& line)
         : source_(source), line_(line), thread_([this] { run(); }) {}
 
-    /// Waits, but at most for `most`. Returns whether the source is loaded. Throws: what SceneSource::load() throws.
+    /// Waits, but at most for `most`. Returns whether the source is loaded. Throws: what FrameSource::load() throws.
     bool wait(std::chrono::milliseconds most, const std::stop_token& stop) {
         std::unique_lock lock(mutex_);
         ended_.wait_for(lock, stop, most, [this] { return done_; });
@@ -90,7 +90,7 @@ private:
         server_->broadcast("", viewer::progress_message(finding_pairs, done));
     }
 
-    viewer::SceneSource& source_;
+    viewer::FrameSource& source_;
     std::mutex report_mutex_;
     ProgressLine& line_;
     viewer::PageServer* server_ = nullptr;
@@ -114,7 +114,7 @@ void finish_loading(Loading& loading, viewer::PageServer& server, const std::sto
 }
 
 /// Counts the pairs of all frames for the timeline of the page.
-std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& server) {
+std::jthread start_counting(viewer::FrameSource& source, viewer::PageServer& server) {
     return std::jthread([&](const std::stop_token& stop) {
         try {
             source.count_frames([&](std::uint64_t done) { server.broadcast("", viewer::timeline_message(done)); },
@@ -130,7 +130,7 @@ std::jthread start_counting(viewer::SceneSource& source, viewer::PageServer& ser
 
 /// Serves a scene until a stop request.
 void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
-    viewer::SceneSource source(std::move(view.contents), *view.finder);
+    viewer::FrameSource source(std::move(view.contents), *view.finder);
     std::optional<viewer::PageServer> server;
     server.emplace(source, server_options(request));
     Loading loading(source, progress);
@@ -146,7 +146,7 @@ void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& pro
 
 /// Writes the page of --export and the picture of --screenshot.
 void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
-    viewer::SceneSource source(std::move(view.contents), *view.finder);
+    viewer::FrameSource source(std::move(view.contents), *view.finder);
     source.load([&](double done) { progress.show(finding_pairs, done); });
     if (source.moving()) {
         const auto show = [&](std::uint64_t done) {

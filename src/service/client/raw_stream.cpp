@@ -8,7 +8,8 @@
 
 namespace octopair::service {
 
-RawStream::RawStream(Connection& connection, Terms terms) : connection_(connection), terms_(std::move(terms)) {
+RawStream::RawStream(Connection& connection, Callbacks callbacks)
+    : connection_(connection), callbacks_(std::move(callbacks)) {
     connection_.prepare(context_);
 }
 
@@ -28,56 +29,56 @@ bool RawStream::guarded(Step&& step) {
 
 grpc::Status RawStream::run(const std::stop_token& stop) {
     const std::stop_callback cancel(stop, [&] { context_.TryCancel(); });
-    call_ = grpc::GenericStub(connection_.channel()).PrepareCall(&context_, terms_.method, &queue_);
-    call_->StartCall(tag(Event::started));
+    call_ = grpc::GenericStub(connection_.channel()).PrepareCall(&context_, callbacks_.method, &queue_);
+    call_->StartCall(tag(Completion::started));
     pending_ = 1;
     while (pending_ > 0) {
-        void* event = nullptr;
+        void* completion = nullptr;
         bool ok = false;
-        if (!queue_.Next(&event, &ok)) break;
+        if (!queue_.Next(&completion, &ok)) break;
         --pending_;
-        handle(Event(reinterpret_cast<std::uintptr_t>(event)), ok);
+        handle(Completion(reinterpret_cast<std::uintptr_t>(completion)), ok);
     }
     if (failure_) std::rethrow_exception(failure_);
     return status_;
 }
 
-void RawStream::handle(Event event, bool ok) {
+void RawStream::handle(Completion completion, bool ok) {
     // Other events show only that gRPC took something: it does so also for a server that ends each call.
-    if (ok && event == Event::read) connection_.heard();
-    switch (event) {
-        case Event::started:
+    if (ok && completion == Completion::read) connection_.heard();
+    switch (completion) {
+        case Completion::started:
             ok ? read() : finish();
             if (ok) write();
             break;
-        case Event::read:
-            ok&& guarded([&] { terms_.take(in_); }) ? read() : finish();
+        case Completion::read:
+            ok&& guarded([&] { callbacks_.take(in_); }) ? read() : finish();
             break;
-        case Event::written:
+        case Completion::written:
             if (ok) write();  // after a failed write, the read fails as well and finish() gets the status
             break;
-        case Event::writes_done:
-        case Event::finished:
+        case Completion::writes_done:
+        case Completion::finished:
             break;
     }
 }
 
 void RawStream::read() {
     ++pending_;
-    call_->Read(&in_, tag(Event::read));
+    call_->Read(&in_, tag(Completion::read));
 }
 
 void RawStream::write() {
     std::optional<grpc::ByteBuffer> message;
-    if (!guarded([&] { message = terms_.next(); })) return;
+    if (!guarded([&] { message = callbacks_.next(); })) return;
     ++pending_;
-    message ? call_->Write(*message, tag(Event::written)) : call_->WritesDone(tag(Event::writes_done));
+    message ? call_->Write(*message, tag(Completion::written)) : call_->WritesDone(tag(Completion::writes_done));
 }
 
 void RawStream::finish() {
     if (std::exchange(finishing_, true)) return;
     ++pending_;
-    call_->Finish(&status_, tag(Event::finished));
+    call_->Finish(&status_, tag(Completion::finished));
 }
 
 }  // namespace octopair::service

@@ -19,7 +19,8 @@ class Connection;
 
 class RawStream {
 public:
-    struct Terms {
+    /// The method to call, and the functions that the stream calls.
+    struct Callbacks {
         const char* method = nullptr;  ///< "/PACKAGE.SERVICE/METHOD"
         /// Returns the next message to the server; nothing at the end. An exception cancels the call.
         std::function<std::optional<grpc::ByteBuffer>()> next;
@@ -27,7 +28,7 @@ public:
         std::function<void(grpc::ByteBuffer&)> take;
     };
 
-    RawStream(Connection& connection, Terms terms);
+    RawStream(Connection& connection, Callbacks callbacks);
     RawStream(const RawStream&) = delete;
     RawStream& operator=(const RawStream&) = delete;
 
@@ -35,11 +36,11 @@ public:
     grpc::Status run(const std::stop_token& stop);
 
 private:
-    enum class Event : std::uintptr_t { started = 1, read, written, writes_done, finished };
+    enum class Completion : std::uintptr_t { started = 1, read, written, writes_done, finished };
 
     // NOLINTNEXTLINE(performance-no-int-to-ptr): gRPC's tags are pointers; these are numbers and never dereferenced.
-    static void* tag(Event event) { return reinterpret_cast<void*>(std::uintptr_t(event)); }
-    void handle(Event event, bool ok);
+    static void* tag(Completion completion) { return reinterpret_cast<void*>(std::uintptr_t(completion)); }
+    void handle(Completion completion, bool ok);
     void read();
     void write();
     template <typename Step>
@@ -47,7 +48,7 @@ private:
     void finish();
 
     Connection& connection_;
-    Terms terms_;
+    Callbacks callbacks_;
     grpc::ClientContext context_;
     grpc::CompletionQueue queue_;
     std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call_;

@@ -12,22 +12,22 @@ namespace octopair::service {
 SceneStream::SceneStream(Connection& connection) {
     connection.prepare(context_);
     call_ = grpc::GenericStub(connection.channel()).PrepareCall(&context_, "/octopair.v1.Octopair/Scene", &queue_);
-    call_->StartCall(tag(Event::started));
+    call_->StartCall(tag(Completion::started));
 }
 
 SceneStream::~SceneStream() {
     context_.TryCancel();
     queue_.Shutdown();
-    void* event = nullptr;
+    void* completion = nullptr;
     bool ok = false;
-    while (queue_.Next(&event, &ok)) {
+    while (queue_.Next(&completion, &ok)) {
     }
 }
 
 void SceneStream::send(Bytes calls) {
     while (!started_ || writing_) wait();
     writing_ = true;
-    call_->Write(pack(v1::SceneUpload(), grpc::Slice(calls.data(), calls.size())), tag(Event::written));
+    call_->Write(pack(v1::SceneUpload(), grpc::Slice(calls.data(), calls.size())), tag(Completion::written));
 }
 
 grpc::ByteBuffer SceneStream::receive() {
@@ -40,28 +40,28 @@ grpc::ByteBuffer SceneStream::receive() {
 
 void SceneStream::read() {
     received_ = false;
-    call_->Read(&in_, tag(Event::read));
+    call_->Read(&in_, tag(Completion::read));
 }
 
-/// Waits for the next event, and handles it. Throws: Ended.
+/// Waits for the next completion, and handles it. Throws: Ended.
 void SceneStream::wait() {
-    void* event = nullptr;
+    void* completion = nullptr;
     bool ok = false;
-    if (finished_ || !queue_.Next(&event, &ok)) throw Ended();
-    handle(*static_cast<Event*>(event), ok);
+    if (finished_ || !queue_.Next(&completion, &ok)) throw Ended();
+    handle(*static_cast<Completion*>(completion), ok);
     if (finished_) throw Ended();
 }
 
-void SceneStream::handle(Event event, bool ok) {
-    const bool reads = event == Event::started || event == Event::read;
-    if (event == Event::written) writing_ = false;  // after a failed write, the read fails as well
-    if (event == Event::finished) finished_ = true;
+void SceneStream::handle(Completion completion, bool ok) {
+    const bool reads = completion == Completion::started || completion == Completion::read;
+    if (completion == Completion::written) writing_ = false;  // after a failed write, the read fails as well
+    if (completion == Completion::finished) finished_ = true;
     if (reads && !ok) {
-        call_->Finish(&status_, tag(Event::finished));
-    } else if (event == Event::started) {
+        call_->Finish(&status_, tag(Completion::finished));
+    } else if (completion == Completion::started) {
         started_ = true;
         read();
-    } else if (event == Event::read) {
+    } else if (completion == Completion::read) {
         received_ = true;
     }
 }

@@ -39,14 +39,15 @@ public:
     const grpc::Status& status() const { return status_; }
 
 private:
-    enum class Event : std::uint8_t { started, read, written, finished };
+    enum class Completion : std::uint8_t { started, read, written, finished };
 
-    void* tag(Event event) { return &events_[std::size_t(event)]; }
+    void* tag(Completion completion) { return &completions_[std::size_t(completion)]; }
     void read();
     void wait();
-    void handle(Event event, bool ok);
+    void handle(Completion completion, bool ok);
 
-    std::array<Event, 4> events_ = {Event::started, Event::read, Event::written, Event::finished};
+    std::array<Completion, 4> completions_ = {Completion::started, Completion::read, Completion::written,
+                                              Completion::finished};
     grpc::ClientContext context_;
     grpc::CompletionQueue queue_;
     std::unique_ptr<grpc::ClientAsyncReaderWriter<grpc::ByteBuffer, grpc::ByteBuffer>> call_;

@@ -12,7 +12,7 @@ namespace octopair::service {
 
 static_assert(std::endian::native == std::endian::little, "numbers are hashed as they lie in memory");
 
-struct JobHash::State {
+struct JobHash::Impl {
     XXH3_state_t xxh;
 };
 
@@ -31,8 +31,8 @@ void add_set(JobHash& hash, bool there, const v1::ObjectSet& set) {
 
 }  // namespace
 
-JobHash::JobHash(const v1::JobSpec& spec, std::uint32_t algorithm) : state_(std::make_unique<State>()) {
-    XXH3_128bits_reset(&state_->xxh);
+JobHash::JobHash(const v1::JobSpec& spec, std::uint32_t algorithm) : impl_(std::make_unique<Impl>()) {
+    XXH3_128bits_reset(&impl_->xxh);
     add_number(*this, algorithm);
     add_number(*this, std::uint32_t(spec.order()));
     add_number(*this, spec.margin());
@@ -44,11 +44,11 @@ JobHash::JobHash(const v1::JobSpec& spec, std::uint32_t algorithm) : state_(std:
 
 JobHash::~JobHash() = default;
 
-void JobHash::add(std::span<const std::byte> data) { XXH3_128bits_update(&state_->xxh, data.data(), data.size()); }
+void JobHash::add(std::span<const std::byte> data) { XXH3_128bits_update(&impl_->xxh, data.data(), data.size()); }
 
 std::string JobHash::digest() const {
     XXH128_canonical_t bytes;
-    XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(&state_->xxh));
+    XXH128_canonicalFromHash(&bytes, XXH3_128bits_digest(&impl_->xxh));
     return {std::begin(bytes.digest), std::end(bytes.digest)};
 }
 

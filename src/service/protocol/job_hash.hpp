@@ -36,8 +36,8 @@ public:
     std::string digest() const;
 
 private:
-    struct State;
-    std::unique_ptr<State> state_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace octopair::service

@@ -69,9 +69,9 @@ class WithoutReflection final : public grpc::ServerBuilderOption {
 
 }  // namespace
 
-class Server::State {
+class Server::Impl {
 public:
-    State(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
+    Impl(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
         : listener_(options.listen, options.listen_socket, missing_protection(options)),
           context_(options, std::move(log)),
           credentials_(options.tls, *context_.log),
@@ -97,7 +97,7 @@ public:
         warn_of_clients_without_token();
     }
 
-    ~State() {
+    ~Impl() {
         context_.server_log.metrics().hide();
         listener_.stop();
         new_connections_.close();
@@ -139,23 +139,23 @@ private:
     }
 
     void start_listening(const ServerOptions& options) {
-        Listener::Terms terms;
-        terms.max_connections = options.limits.connections;
-        terms.max_per_client = context_.connections_per_client;
-        terms.encrypted = !options.tls.certificate.empty();
-        terms.accept = [this](Descriptor connection) { new_connections_.add(std::move(connection)); };
-        terms.refused = [this] {
+        ListenerOptions listening;
+        listening.max_connections = options.limits.connections;
+        listening.max_per_client = context_.connections_per_client;
+        listening.encrypted = !options.tls.certificate.empty();
+        listening.accept = [this](Descriptor connection) { new_connections_.add(std::move(connection)); };
+        listening.refused = [this] {
             context_.server_log.connections_refused(context_.options.limits.connections, listener_.refused());
         };
-        terms.connected = [this](const std::string& peer) { context_.server_log.connected(peer, {}); };
-        terms.greeting = std::min<std::chrono::milliseconds>(std::chrono::seconds(10), options.stall);
+        listening.connected = [this](const std::string& peer) { context_.server_log.connected(peer, {}); };
+        listening.greeting = std::min<std::chrono::milliseconds>(std::chrono::seconds(10), options.stall);
         try {
             for (std::size_t i = 0; i < max_handed_over; ++i) {
                 handing_over_.emplace_back([this] {
                     new_connections_.run([this](Descriptor& connection) { hand_over(std::move(connection)); });
                 });
             }
-            listener_.start(std::move(terms));
+            listener_.start(std::move(listening));
         } catch (...) {
             new_connections_.close();  // the threads end; otherwise their destructors would wait for them without end
             throw;
@@ -226,18 +226,18 @@ private:
 };
 
 Server::Server(const ServerOptions& options, std::shared_ptr<spdlog::logger> log)
-    : state_(std::make_unique<State>(options, std::move(log))) {}
+    : impl_(std::make_unique<Impl>(options, std::move(log))) {}
 
 Server::~Server() = default;
 
-const Address& Server::address() const { return state_->address(); }
+const Address& Server::address() const { return impl_->address(); }
 
-ServerLoad Server::load() const { return state_->load(); }
+ServerLoad Server::load() const { return impl_->load(); }
 
-std::uint64_t Server::beats() const { return state_->beats(); }
+std::uint64_t Server::beats() const { return impl_->beats(); }
 
-void Server::reload() { state_->reload(); }
+void Server::reload() { impl_->reload(); }
 
-void Server::drain(std::optional<std::chrono::milliseconds> grace) { state_->drain(grace); }
+void Server::drain(std::optional<std::chrono::milliseconds> grace) { impl_->drain(grace); }
 
 }  // namespace octopair::service

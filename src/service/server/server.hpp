@@ -43,8 +43,8 @@ public:
     void drain(std::optional<std::chrono::milliseconds> grace = {});
 
 private:
-    class State;
-    std::unique_ptr<State> state_;
+    class Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace octopair::service

@@ -96,7 +96,7 @@ void LiveFeed::update_rows(bool whole) {
 }
 
 /// Returns what the last event of each pair changes.
-static void sort_events(std::vector<LiveState::Event>& events) {
+static void sort_events(std::vector<LiveState::PairEvent>& events) {
     std::stable_sort(events.begin(), events.end(), [](const auto& x, const auto& y) { return x.pair < y.pair; });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -165,7 +165,7 @@ std::string LiveFeed::difference_since(std::uint32_t last) const {
     for (std::uint32_t row = 0; row < changed_.size(); ++row) {
         if (changed_[row] > last) rows.push_back(row);
     }
-    std::vector<LiveState::Event> events;
+    std::vector<LiveState::PairEvent> events;
     for (const Difference& difference : differences_) {
         if (difference.frame <= last) continue;
         for (const Pair pair : difference.ended) events.push_back({pair, false});

@@ -28,13 +28,14 @@ struct LiveState {
     std::vector<std::uint8_t> exists;                            ///< by index; empty: all exist
     /// All pairs, or the first ones, ascending. If absent, the pairs are those of the last state, changed by the events.
     std::optional<std::vector<Pair>> pairs;
-    struct Event {
+    /// A pair that began or ended.
+    struct PairEvent {
         Pair pair;
         bool began;
     };
-    std::vector<Event> events;     ///< since the last state, in order of time
-    std::uint64_t pair_count = 0;  ///< number of all pairs, also of those that are not in `pairs`
-    std::uint64_t step = 0;        ///< number of steps so far
+    std::vector<PairEvent> events;  ///< since the last state, in order of time
+    std::uint64_t pair_count = 0;   ///< number of all pairs, also of those that are not in `pairs`
+    std::uint64_t step = 0;         ///< number of steps so far
     double step_seconds = 0;
 };
 

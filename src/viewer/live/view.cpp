@@ -155,9 +155,9 @@ private:
     Scene& scene_;
     const Clock::duration least_pause_;
     std::uint64_t steps_ = 0;
-    std::vector<LiveState::Event> events_;  // since the last copy
-    bool all_pairs_needed_ = true;          // events are missing
-    bool too_many_ = false;                 // of the last copy: it has no pairs
+    std::vector<LiveState::PairEvent> events_;  // since the last copy
+    bool all_pairs_needed_ = true;              // events are missing
+    bool too_many_ = false;                     // of the last copy: it has no pairs
     Clock::time_point next_ = {}, unwatched_ = {};
 
     std::mutex mutex_;

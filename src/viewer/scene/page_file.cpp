@@ -10,7 +10,7 @@ namespace octopair::viewer {
 namespace {
 
 /// Returns the element with the data of an address; an empty text for an address without data.
-std::string element(SceneSource& source, const std::string& address) {
+std::string element(FrameSource& source, const std::string& address) {
     const auto parsed = Address::parse('/' + address);
     const auto answer = parsed ? source.get(*parsed) : std::nullopt;
     if (!answer) return {};
@@ -18,7 +18,7 @@ std::string element(SceneSource& source, const std::string& address) {
            base64(gzip(answer->body, 9)) + "</script>\n";
 }
 
-std::string elements(SceneSource& source, const std::vector<std::string>& addresses) {
+std::string elements(FrameSource& source, const std::vector<std::string>& addresses) {
     std::string all;
     for (const std::string& address : addresses) all += element(source, address);
     return all;
@@ -26,7 +26,7 @@ std::string elements(SceneSource& source, const std::vector<std::string>& addres
 
 }  // namespace
 
-void write_page(SceneSource& source, const std::function<void(std::string_view)>& write, std::uint64_t most) {
+void write_page(FrameSource& source, const std::function<void(std::string_view)>& write, std::uint64_t most) {
     const std::string html = page();
     constexpr std::string_view marker = "<!-- data -->";
     const std::size_t place = html.find(marker);
@@ -46,7 +46,7 @@ void write_page(SceneSource& source, const std::function<void(std::string_view)>
         if (fixed + data.size() + next.size() > most) break;
         data += next;
     }
-    SceneSource::Export how{written, {}};
+    FrameSource::Export how{written, {}};
     if (written < frames) {
         how.notices.push_back("Only the first " + grouped_number(written) + " of " + grouped_number(frames) +
                               " frames are in this file.");

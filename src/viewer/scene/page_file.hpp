@@ -6,16 +6,16 @@
 #include <string>
 #include <string_view>
 
-#include "viewer/scene/scene_source.hpp"
+#include "viewer/scene/frame_source.hpp"
 
 namespace octopair::viewer {
 
 /// Largest exported page, in bytes. Frames that do not fit are left out, and the page says so.
 inline constexpr std::uint64_t max_page_bytes = std::uint64_t(64) << 20;
 
-/// Writes the page with the data of a loaded source. Frames are counted (SceneSource::count_frames) before.
+/// Writes the page with the data of a loaded source. Frames are counted (FrameSource::count_frames) before.
 /// Throws: Error{resource_limit} if the first frame alone exceeds `most`; what `write` and the source throw.
-void write_page(SceneSource& source, const std::function<void(std::string_view)>& write,
+void write_page(FrameSource& source, const std::function<void(std::string_view)>& write,
                 std::uint64_t most = max_page_bytes);
 
 }  // namespace octopair::viewer

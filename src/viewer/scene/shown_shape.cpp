@@ -113,11 +113,11 @@ ShownShape shown(const shape::Plane& plane, double extent) {
     const double width = std::hypot(right[0], right[1], right[2]);
     for (double& value : right) value /= width;
     const Point3d up = cross(normal, right);
-    const double at = plane.offset / length;
+    const double distance = plane.offset / length;
     ShownShape out;
     for (const auto& [x, y] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)}) {
         Point3d corner;
-        for (std::size_t i = 0; i < 3; ++i) corner[i] = normal[i] * at + (right[i] * x + up[i] * y) * extent;
+        for (std::size_t i = 0; i < 3; ++i) corner[i] = normal[i] * distance + (right[i] * x + up[i] * y) * extent;
         add_vertex(out, corner[0], corner[1], corner[2]);
     }
     out.triangles = {{0, 1, 2}, {0, 2, 3}};

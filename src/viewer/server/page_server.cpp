@@ -43,9 +43,9 @@ Tcp::endpoint endpoint_of(const PageServerOptions& options) {
 
 }  // namespace
 
-class PageServer::State final : public ConnectionHost {
+class PageServer::Impl final : public ConnectionHost {
 public:
-    State(Source& source, const PageServerOptions& options)
+    Impl(Source& source, const PageServerOptions& options)
         : source_(source), options_(options), acceptor_(io_), access_(options.host, open(options), options.token) {}
 
     void start() {
@@ -219,8 +219,8 @@ private:
     /// Accepts connections that wait, but few at a time: the requests of these must be read before later connections cut them. Returns
     /// false if one cannot be accepted, for example because the process has too many open files.
     bool accept_waiting() {
-        constexpr int few = 16;
-        for (int i = 0; i < few; ++i) {
+        constexpr int max_at_once = 16;
+        for (int i = 0; i < max_at_once; ++i) {
             const int connection = ::accept4(acceptor_.native_handle(), nullptr, nullptr, socket_flags);
             if (connection < 0) {
                 if (errno == EINTR || errno == ECONNABORTED) continue;
@@ -298,16 +298,14 @@ private:
 };
 
 PageServer::PageServer(Source& source, const PageServerOptions& options)
-    : state_(std::make_unique<State>(source, options)) {
-    state_->start();
+    : impl_(std::make_unique<Impl>(source, options)) {
+    impl_->start();
 }
 
-PageServer::~PageServer() { state_->stop(); }
+PageServer::~PageServer() { impl_->stop(); }
 
-std::string PageServer::address() const { return state_->address(); }
-void PageServer::notify() { state_->notify(); }
-void PageServer::broadcast(const std::string& path, std::string message) {
-    state_->broadcast(path, std::move(message));
-}
+std::string PageServer::address() const { return impl_->address(); }
+void PageServer::notify() { impl_->notify(); }
+void PageServer::broadcast(const std::string& path, std::string message) { impl_->broadcast(path, std::move(message)); }
 
 }  // namespace octopair::viewer

@@ -43,8 +43,8 @@ public:
     void broadcast(const std::string& path, std::string message);
 
 private:
-    class State;
-    std::unique_ptr<State> state_;
+    class Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace octopair::viewer

@@ -33,14 +33,14 @@ class WaitCall final : public grpc::ServerUnaryReactor,
 public:
     WaitCall(ServerContext& server, grpc::ByteBuffer& response) : server_(server), response_(response) {}
 
-    /// `terms` returns the request's terms. It may throw.
-    template <typename Terms>
-    void start(const grpc::CallbackServerContext& context, Right right, Terms&& terms) {
+    /// `read` returns the request. It may throw.
+    template <typename Read>
+    void start(const grpc::CallbackServerContext& context, Right right, Read&& read) {
         self_ = shared_from_this();
         const grpc::Status status = server_.admit(context, right, admission_);
         if (!status.ok()) return end(status);
         try {
-            const v1::WaitRequest asked = terms();
+            const v1::WaitRequest asked = read();
             job_ = server_.find(admission_.caller, asked.owner(), asked.id());
             if (right == Right::cancel)
                 server_.server_log.job_asked("cancel", *job_, {admission_.client(), context.peer()});
@@ -173,11 +173,11 @@ grpc::ServerUnaryReactor* start_cancel(ServerContext& server, grpc::CallbackServ
     const auto call = std::make_shared<WaitCall>(server, response);
     call->start(context, Right::cancel, [&] {
         const auto name = parsed<v1::JobName>(request);
-        v1::WaitRequest terms;
-        terms.set_id(name.id());
-        terms.set_owner(name.owner());
-        terms.set_seconds(seconds);
-        return terms;
+        v1::WaitRequest wanted;
+        wanted.set_id(name.id());
+        wanted.set_owner(name.owner());
+        wanted.set_seconds(seconds);
+        return wanted;
     });
     return call.get();
 }

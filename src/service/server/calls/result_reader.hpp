@@ -33,15 +33,16 @@ public:
     void add(const std::string& client, std::function<void()> task) { tasks_.add({client, std::move(task)}); }
 
 private:
-    struct Task {
+    struct ReadTask {
         std::string client;
         std::function<void()> run;
     };
-    using Tasks = WorkQueue<Task>;
+    using Tasks = WorkQueue<ReadTask>;
 
     void work() {
         constexpr std::chrono::hours never(1);
-        tasks_.run([this](Tasks::Items& tasks) { return next(tasks); }, never, [](const Task& task) { task.run(); });
+        tasks_.run([this](Tasks::Items& tasks) { return next(tasks); }, never,
+                   [](const ReadTask& task) { task.run(); });
     }
 
     /// Returns the first task of the client whose turn it is.

@@ -146,12 +146,12 @@ private:
 
     void start_scene(const SceneOptions& options) {
         scene_.emplace(server_, admission_.client(), options);
-        ScenePublisher::Terms terms;
-        terms.owner = admission_.client();
-        terms.precision = options.precision;
-        terms.margin = options.margin;
-        terms.wake = [this] { set([] {}); };
-        publisher_ = std::make_shared<ScenePublisher>(std::move(terms), server_.result_reader);
+        ScenePublisher::Description scene;
+        scene.owner = admission_.client();
+        scene.precision = options.precision;
+        scene.margin = options.margin;
+        scene.wake = [this] { set([] {}); };
+        publisher_ = std::make_shared<ScenePublisher>(std::move(scene), server_.result_reader);
         server_.scenes.enter(publisher_);
     }
 

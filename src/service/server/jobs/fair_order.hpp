@@ -24,8 +24,8 @@ public:
     void begin(const std::string& client, double work) {
         now_ = start_of(client);
         ends_[client] = now_ + work;
-        constexpr std::size_t many = 1000;
-        if (ends_.size() > many) std::erase_if(ends_, [this](const auto& end) { return end.second <= now_; });
+        constexpr std::size_t max_known = 1000;
+        if (ends_.size() > max_known) std::erase_if(ends_, [this](const auto& end) { return end.second <= now_; });
     }
 
     /// Notes that a job of a client took more work than begin() was told. `more` >= 0.

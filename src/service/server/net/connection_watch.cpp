@@ -73,18 +73,18 @@ bool ConnectionWatch::must_wait(const std::string& address, Clock::time_point no
     const auto found = paced_.find(address);
     if (found == paced_.end()) return false;
     if (now < found->second.next) return true;
-    found->second.next = now + terms_.interval;
+    found->second.next = now + limits_.interval;
     return false;
 }
 
 bool ConnectionWatch::is_full(const std::string& address) const {
-    const std::uint64_t most = terms_.max_connections;
+    const std::uint64_t most = limits_.max_connections;
     if (most == 0 || unknown_.empty()) return false;
     const auto same = std::uint64_t(std::count_if(unknown_.begin(), unknown_.end(), [&](const Unknown& connection) {
         return connection.peer.address == address;
     }));
-    constexpr std::uint64_t few = 4;  // clients that connect at the same time
-    return unknown_.size() >= std::max(few, most / 2) || same >= std::max(few, most / 8);
+    constexpr std::uint64_t at_least = 4;  // clients that connect at the same time
+    return unknown_.size() >= std::max(at_least, most / 2) || same >= std::max(at_least, most / 8);
 }
 
 /// Cuts the oldest connection of the address that has the most unknown ones.
@@ -110,8 +110,8 @@ void ConnectionWatch::cut_and_pace(std::vector<Unknown>::iterator connection, Cl
 
 void ConnectionWatch::pace(const std::string& address, Clock::time_point now) {
     Paced& paced = paced_[address];
-    paced.next = std::max(paced.next, now + terms_.interval);
-    paced.until = now + terms_.remembered;
+    paced.next = std::max(paced.next, now + limits_.interval);
+    paced.until = now + limits_.remembered;
 }
 
 ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, const Client& client,
@@ -123,7 +123,7 @@ ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, 
         cut_and_pace(found, now);
         return Admission::paused;
     }
-    if (terms_.max_per_client > 0 && open_connections(client.name, now) >= terms_.max_per_client)
+    if (limits_.max_per_client > 0 && open_connections(client.name, now) >= limits_.max_per_client)
         return Admission::too_many;
     known_[client.connection] = {found->peer.address, found->number, socket_of(found->connection.number()),
                                  client.name};
@@ -134,7 +134,7 @@ ConnectionWatch::Admission ConnectionWatch::make_known(const std::string& name, 
 void ConnectionWatch::note_refused(const std::string& name, Clock::time_point now) {
     const auto found = std::find_if(unknown_.begin(), unknown_.end(),
                                     [&](const Unknown& connection) { return connection.peer.name == name; });
-    if (found != unknown_.end() && ++found->refused_calls > terms_.max_refused_calls) cut_and_pace(found, now);
+    if (found != unknown_.end() && ++found->refused_calls > limits_.max_refused_calls) cut_and_pace(found, now);
 }
 
 std::uint64_t ConnectionWatch::open_connections(const std::string& client, Clock::time_point now) {
@@ -148,7 +148,7 @@ bool ConnectionWatch::Known::is_open() const { return socket_of(descriptor) == s
 void ConnectionWatch::forget_closed(Clock::time_point now) {
     std::erase_if(known_, [](const auto& known) { return !known.second.is_open(); });
     std::erase_if(calls_, [&](const auto& calls) {
-        return now - calls.second.open.since > terms_.remembered && !known_.contains(calls.first);
+        return now - calls.second.open.since > limits_.remembered && !known_.contains(calls.first);
     });
     constexpr std::size_t least = 64;
     forget_from_ = std::max(least, 2 * calls_.size());
@@ -157,9 +157,9 @@ void ConnectionWatch::forget_closed(Clock::time_point now) {
 bool ConnectionWatch::note_begin(std::uint64_t number, Clock::time_point now) {
     if (calls_.size() >= forget_from_) forget_closed(now);
     Recent& open = calls_[number].open;
-    add(open, terms_.forgotten_per_second, now);
-    if (open.count <= terms_.max_open_calls) return true;
-    open.count = terms_.max_open_calls;
+    add(open, limits_.forgotten_per_second, now);
+    if (open.count <= limits_.max_open_calls) return true;
+    open.count = limits_.max_open_calls;
     cut_known(number, now);
     return false;
 }
@@ -173,10 +173,11 @@ void ConnectionWatch::note_end(std::uint64_t number, bool reset, Clock::time_poi
     // The end of a connection resets all its calls.
     if (known == known_.end() || !known->second.is_open() || !received_by(known->second.descriptor).open) return;
     Recent& of_client = resets_[known->second.client];
-    add(of_client, terms_.resets_per_second, now);
-    add(found->second.resets, terms_.resets_per_second, now);
-    of_client.count = std::min(of_client.count, terms_.max_resets + 1);
-    if (of_client.count > terms_.max_resets && found->second.resets.count > terms_.few_resets) cut_known(number, now);
+    add(of_client, limits_.resets_per_second, now);
+    add(found->second.resets, limits_.resets_per_second, now);
+    of_client.count = std::min(of_client.count, limits_.max_resets + 1);
+    if (of_client.count > limits_.max_resets && found->second.resets.count > limits_.tolerated_resets)
+        cut_known(number, now);
 }
 
 void ConnectionWatch::add(Recent& recent, double per_second, Clock::time_point now) {
@@ -192,7 +193,7 @@ void ConnectionWatch::cut_known(std::uint64_t number, Clock::time_point now) {
     if (copy.open() && socket_of(copy.number()) == found->second.socket) {
         reset(copy.number());
         pace(found->second.address, now);
-        paused_[found->second.client] = now + terms_.pause;
+        paused_[found->second.client] = now + limits_.pause;
         ++cut_;
     }
     known_.erase(found);
@@ -204,14 +205,14 @@ std::uint64_t ConnectionWatch::check(Clock::time_point now) {
         const Received received = received_by(connection->connection.number());
         if (!received.open) {
             unknown_.erase(connection);
-        } else if (connection->number >= 0 && received.bytes > terms_.max_bytes) {
+        } else if (connection->number >= 0 && received.bytes > limits_.max_bytes) {
             cut_and_pace(connection, now);
-        } else if (now - connection->since > terms_.greeting) {
+        } else if (now - connection->since > limits_.greeting) {
             cut(connection);
         }
     }
-    std::erase_if(resets_, [&](const auto& resets) { return now > resets.second.since + terms_.remembered; });
-    std::erase_if(paused_, [&](const auto& paused) { return now > paused.second + terms_.remembered; });
+    std::erase_if(resets_, [&](const auto& resets) { return now > resets.second.since + limits_.remembered; });
+    std::erase_if(paused_, [&](const auto& paused) { return now > paused.second + limits_.remembered; });
     std::erase_if(paced_, [&](const auto& paced) { return now > paced.second.until; });
     return std::exchange(cut_, 0);
 }

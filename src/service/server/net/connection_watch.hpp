@@ -10,7 +10,8 @@
 // A known connection counts for the client of its first call, until it is closed. It is bounded in calls that it resets (CVE-2023-44487):
 //   - `max_open_calls`: calls that have begun and not ended. HTTP/2 permits fewer streams; the others were reset, and the server has not
 //     dealt with that yet;
-//   - `max_resets`: calls of a client that ended by a reset lately. A connection with few of them is not cut for those of others.
+//   - `max_resets`: calls of a client that ended by a reset lately. A connection with at most
+//     `tolerated_resets` of them is not cut for those of others.
 // After such a cut the client's new connections are cut at their first call, for a `pause`.
 //
 // After a connection was cut for its bytes or calls, new connections of its address wait. They are handed on one by one, with an
@@ -32,25 +33,26 @@
 
 namespace octopair::service {
 
+struct ConnectionLimits {
+    std::uint64_t max_connections = 0;  ///< 0: no limit on the number of unknown connections
+    std::uint64_t max_per_client = 0;   ///< known connections of one client; 0: no limit
+    std::chrono::milliseconds greeting{10'000};
+    std::uint64_t max_bytes = 128 << 10;
+    std::uint64_t max_refused_calls = 32;
+    double max_open_calls = 512, forgotten_per_second = 5;
+    double max_resets = 256, resets_per_second = 50;  ///< at once, and then
+    double tolerated_resets = 16;                     ///< of a connection
+    std::chrono::milliseconds pause{1000};
+    std::chrono::milliseconds interval{50};        ///< between waiting connections of one address
+    std::chrono::milliseconds remembered{10'000};  ///< after a cut: time in which new connections wait
+};
+
 /// Thread safety: none; the caller locks.
 class ConnectionWatch {
 public:
     using Clock = std::chrono::steady_clock;
 
-    struct Terms {
-        std::uint64_t max_connections = 0;  ///< 0: no limit on the number of unknown connections
-        std::uint64_t max_per_client = 0;   ///< known connections of one client; 0: no limit
-        std::chrono::milliseconds greeting{10'000};
-        std::uint64_t max_bytes = 128 << 10;
-        std::uint64_t max_refused_calls = 32;
-        double max_open_calls = 512, forgotten_per_second = 5;
-        double max_resets = 256, resets_per_second = 50;  ///< at once, and then
-        double few_resets = 16;                           ///< of a connection
-        std::chrono::milliseconds pause{1000};
-        std::chrono::milliseconds interval{50};        ///< between waiting connections of one address
-        std::chrono::milliseconds remembered{10'000};  ///< after a cut: time in which new connections wait
-    };
-    explicit ConnectionWatch(const Terms& terms) : terms_(terms) {}
+    explicit ConnectionWatch(const ConnectionLimits& limits) : limits_(limits) {}
 
     /// The other end of a connection.
     struct Peer {
@@ -129,7 +131,7 @@ private:
     void forget_closed(Clock::time_point now);
     bool must_wait(const std::string& address, Clock::time_point now);
 
-    const Terms terms_;
+    const ConnectionLimits limits_;
     std::vector<Unknown> unknown_;  // oldest first
     // By number. Entries of closed connections are removed by forget_closed().
     std::unordered_map<std::uint64_t, Known> known_;

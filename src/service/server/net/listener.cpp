@@ -164,12 +164,12 @@ void Listener::take_over(Descriptor passed, const std::string& unprotected) {
         fail_unprotected(address_, unprotected);
 }
 
-void Listener::start(Terms terms) {
-    terms_ = std::move(terms);
+void Listener::start(ListenerOptions options) {
+    options_ = std::move(options);
     if (!address_.is_unix())
-        watch_.emplace(ConnectionWatch::Terms{.max_connections = terms_.max_connections,
-                                              .max_per_client = terms_.max_per_client,
-                                              .greeting = terms_.greeting});
+        watch_.emplace(ConnectionLimits{.max_connections = options_.max_connections,
+                                        .max_per_client = options_.max_per_client,
+                                        .greeting = options_.greeting});
     thread_ = std::thread([this] { accept_connections(); });
 }
 
@@ -230,7 +230,7 @@ void Listener::refill_spares() {
 
 void Listener::take(Descriptor connection) {
     if (!is_ours(connection)) return;
-    const std::uint64_t most = terms_.max_connections;
+    const std::uint64_t most = options_.max_connections;
     const auto is_full = [&] { return most > 0 && accepted_.size() + waiting_ >= most; };
     if (accepted_.size() >= forget_from_ || is_full()) forget_closed();
     if (is_full()) {
@@ -276,7 +276,7 @@ void Listener::hand_on(Descriptor connection) {
     report_process(connection);
     accepted_.push_back({connection.number(), socket_of(connection.number())});
     connections_ = accepted_.size();
-    terms_.accept(std::move(connection));
+    options_.accept(std::move(connection));
 }
 
 ConnectionWatch::Admission Listener::make_known(const std::string& peer, const ConnectionWatch::Client& client) {
@@ -319,9 +319,9 @@ void Listener::check_watched() {
 
 void Listener::report_refusals() {
     const auto now = std::chrono::steady_clock::now();
-    if (!terms_.refused || now - last_report_ < check_interval) return;
+    if (!options_.refused || now - last_report_ < check_interval) return;
     last_report_ = now;
-    terms_.refused();
+    options_.refused();
 }
 
 /// Returns whether the peer may connect. On a Unix socket the peer must be the user that runs the server, or root.
@@ -334,11 +334,11 @@ bool Listener::is_ours(const Descriptor& connection) const {
 }
 
 void Listener::report_process(const Descriptor& connection) const {
-    if (!address_.is_unix() || !terms_.connected) return;
+    if (!address_.is_unix() || !options_.connected) return;
     ucred peer{};
     socklen_t size = sizeof(peer);
     if (::getsockopt(connection.number(), SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return;
-    terms_.connected("unix:user=" + std::to_string(peer.uid) + ",process=" + std::to_string(peer.pid));
+    options_.connected("unix:user=" + std::to_string(peer.uid) + ",process=" + std::to_string(peer.pid));
 }
 
 /// Removes closed connections from the list. gRPC does not report closing, so the inodes of the descriptors are compared.
@@ -352,7 +352,7 @@ void Listener::refuse(Descriptor connection, std::string why) {
     ++refused_;
     report_refusals();
     const auto now = std::chrono::steady_clock::now();
-    if (!terms_.encrypted) send(connection, empty_settings);
+    if (!options_.encrypted) send(connection, empty_settings);
     refused_connections_.push_back({std::move(connection), std::move(why), now});
     if (refused_connections_.size() > max_refused_open) {
         send_refusal(refused_connections_.front());
@@ -365,7 +365,7 @@ void Listener::send_refusal(Refused& refused) const {
     // Read the client's greeting, which is short: closing with unread data would reset the connection and discard the reason.
     std::array<char, 1 << 16> said;
     (void)::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT);
-    if (!terms_.encrypted) send(refused.connection, goaway("octopair: " + refused.why));
+    if (!options_.encrypted) send(refused.connection, goaway("octopair: " + refused.why));
     (void)::shutdown(refused.connection.number(), SHUT_WR);
 }
 

@@ -24,6 +24,17 @@
 
 namespace octopair::service {
 
+struct ListenerOptions {
+    std::uint64_t max_connections = 0;       ///< 0: no limit
+    std::uint64_t max_per_client = 0;        ///< over TCP; 0: no limit
+    bool encrypted = false;                  ///< connections use TLS; a refused connection then gets no reason
+    std::function<void(Descriptor)> accept;  ///< receives each accepted connection
+    std::function<void()> refused;           ///< called after refusals and cuts, at most once a second
+    /// Receives the process at the other end of each accepted connection of a Unix socket, for the log.
+    std::function<void(const std::string&)> connected;
+    std::chrono::milliseconds greeting{10'000};  ///< time in which a TCP client must make a call that is admitted
+};
+
 class Listener {
 public:
     /// Binds to `address`. Only its owner may use a Unix socket; a lock file lies beside it, and the socket of a dead server is
@@ -42,18 +53,8 @@ public:
     /// Returns the address, with the port that the system chose if port 0 was given.
     const Address& address() const { return address_; }
 
-    struct Terms {
-        std::uint64_t max_connections = 0;       ///< 0: no limit
-        std::uint64_t max_per_client = 0;        ///< over TCP; 0: no limit
-        bool encrypted = false;                  ///< connections use TLS; a refused connection then gets no reason
-        std::function<void(Descriptor)> accept;  ///< receives each accepted connection
-        std::function<void()> refused;           ///< called after refusals and cuts, at most once a second
-        /// Receives the process at the other end of each accepted connection of a Unix socket, for the log.
-        std::function<void(const std::string&)> connected;
-        std::chrono::milliseconds greeting{10'000};  ///< time in which a TCP client must make a call that is admitted
-    };
-    /// Starts a thread that accepts connections. The functions of `terms` are called on this thread.
-    void start(Terms terms);
+    /// Starts a thread that accepts connections. The functions of `options` are called on this thread.
+    void start(ListenerOptions options);
     /// Stops accepting connections.
     void stop();
     /// Notes that `client` makes a call from this peer (ConnectionWatch). Thread safety: any thread may call it.
@@ -106,13 +107,13 @@ private:
     void close_refused();
 
     Address address_;
-    Terms terms_;
+    ListenerOptions options_;
     Descriptor lock_, socket_, wake_;
     ino_t bound_ = 0;                 // inode of the Unix socket that this listener made
     std::vector<Descriptor> spares_;  // reserved: freeing one allows to accept and refuse a connection
     std::vector<Accepted> accepted_;
     std::deque<Refused> refused_connections_;
-    std::chrono::steady_clock::time_point last_report_;  // last call of terms_.refused
+    std::chrono::steady_clock::time_point last_report_;  // last call of options_.refused
     std::size_t forget_from_ = 64;
     std::size_t waiting_ = 0;  // connections that are not handed to gRPC yet (ConnectionWatch)
     std::mutex watch_mutex_;

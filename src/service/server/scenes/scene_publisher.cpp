@@ -25,8 +25,8 @@ std::chrono::nanoseconds processor_time() {
 
 Error no_scene(const std::string& id) { return {ErrorCode::bad_input, "there is no scene " + id.substr(0, 36)}; }
 
-ScenePublisher::ScenePublisher(Terms terms, ResultReader& reader)
-    : id_(new_id()), terms_(std::move(terms)), reader_(reader) {}
+ScenePublisher::ScenePublisher(Description scene, ResultReader& reader)
+    : id_(new_id()), scene_(std::move(scene)), reader_(reader) {}
 
 void ScenePublisher::note_step(const StepNumbers& numbers) {
     objects_.store(numbers.objects, std::memory_order_relaxed);
@@ -69,7 +69,7 @@ void ScenePublisher::close() noexcept {
         {
             const std::lock_guard lock(mutex_);
             closed_ = true;
-            terms_.wake = nullptr;
+            scene_.wake = nullptr;
             receivers = take_receivers(~std::uint64_t(0));
         }
         pass_on(std::move(receivers), nullptr, status_of(no_scene(id_)));
@@ -81,8 +81,8 @@ void ScenePublisher::close() noexcept {
 v1::SceneReport ScenePublisher::report() const {
     v1::SceneReport report;
     report.set_id(id_);
-    report.set_precision(terms_.precision == Precision::float64 ? v1::FLOAT64 : v1::FLOAT32);
-    report.set_margin(terms_.margin);
+    report.set_precision(scene_.precision == Precision::float64 ? v1::FLOAT64 : v1::FLOAT32);
+    report.set_margin(scene_.margin);
     report.set_objects(objects_);
     report.set_pairs(pairs_);
     report.set_steps(steps_);
@@ -98,7 +98,7 @@ std::shared_ptr<const StepSnapshot> ScenePublisher::wait(Waiting waiting) {
         return latest;
     waiting_.push_back(std::move(waiting));
     update_wanted();
-    terms_.wake();
+    scene_.wake();
     return nullptr;
 }
 
@@ -141,7 +141,7 @@ void ScenePublisher::update_wanted() {
 void ScenePublisher::pass_on(Receivers receivers, std::shared_ptr<const StepSnapshot> snapshot,
                              const grpc::Status& failure) {
     if (receivers.empty()) return;
-    reader_.add(terms_.owner, [receivers = std::move(receivers), snapshot = std::move(snapshot), failure] {
+    reader_.add(scene_.owner, [receivers = std::move(receivers), snapshot = std::move(snapshot), failure] {
         for (const auto& receiver : receivers) receiver->receive(snapshot, failure);
     });
 }

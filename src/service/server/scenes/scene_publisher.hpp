@@ -81,7 +81,8 @@ public:
     /// Reciprocal of the share of the time that copies take.
     static constexpr int intervals_per_copy = 100;
 
-    struct Terms {
+    /// What a publisher knows of its scene.
+    struct Description {
         std::string owner;
         Precision precision = Precision::float32;
         double margin = 0;
@@ -97,12 +98,12 @@ public:
     using Take = std::function<StepSnapshot(std::uint64_t pair_limit)>;
 
     /// `reader`: thread that passes snapshots on. Requires: `reader` outlives the publisher.
-    ScenePublisher(Terms terms, ResultReader& reader);
+    ScenePublisher(Description scene, ResultReader& reader);
     ScenePublisher(const ScenePublisher&) = delete;
     ScenePublisher& operator=(const ScenePublisher&) = delete;
 
     const std::string& id() const { return id_; }
-    const std::string& owner() const { return terms_.owner; }
+    const std::string& owner() const { return scene_.owner; }
 
     // For the scene's thread.
 
@@ -138,7 +139,7 @@ private:
     void pass_on(Receivers receivers, std::shared_ptr<const StepSnapshot> snapshot, const grpc::Status& failure);
 
     const std::string id_;
-    Terms terms_;
+    Description scene_;
     ResultReader& reader_;
 
     std::atomic<std::uint64_t> steps_ = 0, objects_ = 0, pairs_ = 0;

@@ -46,7 +46,7 @@ FileBytes bytes_of(const File& file) {
 StateFolder::StateFolder(std::string path, const Room& room, std::shared_ptr<spdlog::logger> log)
     : path_(std::move(path)),
       log_(std::move(log)),
-      disk_("state_bytes", "bytes of state on its disk", room.all, room.each) {
+      disk_("state_bytes", "bytes of state on its disk", room.total, room.per_client) {
     const bool made = ::mkdir(path_.c_str(), 0700) == 0;
     if (!made && errno != EEXIST) fail_io(path_, "cannot create", errno);
     if (made && !sync_folder_of(path_)) fail_io(path_, "cannot sync its folder", errno);

@@ -57,7 +57,7 @@ void StoredJob::wait_for_room(const NoRoomError& why, std::chrono::duration<doub
     needed_bytes_ = needed;
     parts_.pairs->discard();
     parts_.folder.disk().check(parts_.disk.amount() + needed_bytes_);
-    const std::uint64_t most = parts_.folder.disk_space().all;
+    const std::uint64_t most = parts_.folder.disk_space().total;
     if (parts_.disk.amount() + needed_bytes_ > most) {
         throw Error(ErrorCode::io_failed, "the result does not fit on the server's disk, which has " +
                                               std::to_string(most) + " bytes in all");

@@ -1,4 +1,4 @@
-#include "viewer/scene/scene_source.hpp"
+#include "viewer/scene/frame_source.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -50,10 +50,10 @@ bool has_contacts(const std::vector<Finding>& findings) {
 
 }  // namespace
 
-SceneSource::SceneSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown)
+FrameSource::FrameSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown)
     : contents_(std::move(contents)), finder_(finder), most_shown_(most_shown) {}
 
-void SceneSource::load(const ProgressSink& progress) {
+void FrameSource::load(const ProgressSink& progress) {
     const std::lock_guard lock(frames_mutex_);
     auto first = std::make_shared<Frame>();
     first->data = finder_.find(0, progress);
@@ -82,7 +82,7 @@ void SceneSource::load(const ProgressSink& progress) {
     loading_ = false;
 }
 
-SceneSource::FramePointer SceneSource::find(std::uint64_t number, const FramePointer& before) {
+FrameSource::FramePointer FrameSource::find(std::uint64_t number, const FramePointer& before) {
     auto frame = std::make_shared<Frame>();
     frame->number = number;
     frame->data = finder_.find(number, {});
@@ -96,7 +96,7 @@ SceneSource::FramePointer SceneSource::find(std::uint64_t number, const FramePoi
 }
 
 /// Returns a frame. Finds it, and the frame before it, if they are not kept. Requires: frames_mutex_ is locked.
-SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
+FrameSource::FramePointer FrameSource::frame(std::uint64_t number) {
     const auto kept = [&](std::uint64_t wanted) -> FramePointer {
         const auto found =
             std::find_if(kept_.begin(), kept_.end(), [&](const auto& frame) { return frame->number == wanted; });
@@ -117,7 +117,7 @@ SceneSource::FramePointer SceneSource::frame(std::uint64_t number) {
     return found;
 }
 
-SceneSource::FramePointer SceneSource::count_frame(std::uint64_t number, const FramePointer& before) {
+FrameSource::FramePointer FrameSource::count_frame(std::uint64_t number, const FramePointer& before) {
     const std::lock_guard lock(frames_mutex_);
     FramePointer now;
     const auto fail = [this](const char* why) {
@@ -144,7 +144,7 @@ SceneSource::FramePointer SceneSource::count_frame(std::uint64_t number, const F
     return now;
 }
 
-void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, const std::stop_token& stop) {
+void FrameSource::count_frames(const std::function<void(std::uint64_t)>& more, const std::stop_token& stop) {
     using Clock = std::chrono::steady_clock;
     auto last_call = Clock::now();
     FramePointer before;
@@ -158,21 +158,21 @@ void SceneSource::count_frames(const std::function<void(std::uint64_t)>& more, c
     }
 }
 
-std::uint64_t SceneSource::counted() const {
+std::uint64_t FrameSource::counted() const {
     const std::lock_guard lock(counts_mutex_);
     return counts_.pairs.size();
 }
 
-const Octants& SceneSource::octants(Frame& frame) {
+const Octants& FrameSource::octants(Frame& frame) {
     if (!frame.octants) frame.octants = octants_of(shown_frame(frame));
     return *frame.octants;
 }
 
-ShownFrame SceneSource::shown_frame(const Frame& frame) const {
+ShownFrame FrameSource::shown_frame(const Frame& frame) const {
     return {contents_, contents_.objects, shown_, origin_, frame.data, frame.began, frame.ended};
 }
 
-std::optional<Answer> SceneSource::get(const Address& address) {
+std::optional<Answer> FrameSource::get(const Address& address) {
     const std::vector<std::string_view> parts = address.parts();
     if (parts.size() == 1) return get_scene(parts[0], address);
     if (parts[0] == "shape" && parts.size() == 2) {
@@ -196,7 +196,7 @@ std::optional<Answer> SceneSource::get(const Address& address) {
     return object_answer(shown_frame(*found), std::uint32_t(*object), &octants(*found));
 }
 
-std::optional<Answer> SceneSource::get_scene(std::string_view what, const Address& address) {
+std::optional<Answer> FrameSource::get_scene(std::string_view what, const Address& address) {
     if (what == "view.json") return view_answer();
     if (what == "shown.u32" && !shown_.in_order()) return binary_answer(shown_.objects());
     if (what == "groups.u32" && !contents_.groups.empty()) return shown_column(contents_.groups);
@@ -209,7 +209,7 @@ std::optional<Answer> SceneSource::get_scene(std::string_view what, const Addres
     return search_answer(shown_frame(*kept_.back()), address.parameter("q"));
 }
 
-std::optional<Answer> SceneSource::answer_about(Frame& frame, std::string_view what, const Address& address) {
+std::optional<Answer> FrameSource::answer_about(Frame& frame, std::string_view what, const Address& address) {
     const ShownFrame shown = shown_frame(frame);
     if (what == "frame.json") return frame_answer(frame);
     if (what == "frame.f32") return box_rows(shown);
@@ -225,14 +225,14 @@ std::optional<Answer> SceneSource::answer_about(Frame& frame, std::string_view w
     return std::nullopt;
 }
 
-std::optional<Answer> SceneSource::octant_answer(Frame& frame, std::string_view level) {
+std::optional<Answer> FrameSource::octant_answer(Frame& frame, std::string_view level) {
     if (!level.ends_with(".bin")) return std::nullopt;
     const auto number = whole_number(level.substr(0, level.size() - 4));
     if (!number || *number > OctalCode::max_level) return std::nullopt;
     return octant_level(octants(frame), unsigned(*number), origin_);
 }
 
-Answer SceneSource::view_answer() const {
+Answer FrameSource::view_answer() const {
     const std::lock_guard lock(counts_mutex_);
     Json has = {{"rows", !shown_.in_order()},
                 {"boxes", contents_.has_boxes},
@@ -264,7 +264,7 @@ Answer SceneSource::view_answer() const {
                         {"summary", std::move(summary)}});
 }
 
-Answer SceneSource::frame_answer(const Frame& frame) const {
+Answer FrameSource::frame_answer(const Frame& frame) const {
     const std::vector<std::uint8_t>& exists = frame.data.exists;
     Json json = {{"frame", frame.number},
                  {"objects", exists.empty() ? contents_.objects
@@ -277,7 +277,7 @@ Answer SceneSource::frame_answer(const Frame& frame) const {
     return json_answer(json);
 }
 
-Answer SceneSource::timeline_answer() const {
+Answer FrameSource::timeline_answer() const {
     const std::lock_guard lock(counts_mutex_);
     const std::uint64_t all = export_ ? export_->frames : frames();
     const auto first = [&](const std::vector<std::uint64_t>& counts) {
@@ -293,7 +293,7 @@ Answer SceneSource::timeline_answer() const {
     return json_answer(json);
 }
 
-Answer SceneSource::shapes_answer() const {
+Answer FrameSource::shapes_answer() const {
     Json list = Json::array();
     for (const ShownShape& shape : contents_.shapes) {
         list.push_back(
@@ -302,7 +302,7 @@ Answer SceneSource::shapes_answer() const {
     return json_answer({{"shapes", std::move(list)}});
 }
 
-std::optional<Answer> SceneSource::shape_answer(std::uint64_t number) const {
+std::optional<Answer> FrameSource::shape_answer(std::uint64_t number) const {
     if (number >= contents_.shapes.size()) return std::nullopt;
     const ShownShape& shape = contents_.shapes[std::size_t(number)];
     Answer answer;
@@ -311,7 +311,7 @@ std::optional<Answer> SceneSource::shape_answer(std::uint64_t number) const {
     return answer;
 }
 
-Answer SceneSource::pose_rows() const {
+Answer FrameSource::pose_rows() const {
     std::vector<float> rows;
     rows.reserve(12 * shown_.size());
     for (const std::uint32_t object : shown_.objects()) {
@@ -331,32 +331,32 @@ Answer SceneSource::pose_rows() const {
 }
 
 template <typename T>
-Answer SceneSource::shown_column(const std::vector<T>& of_objects) const {
+Answer FrameSource::shown_column(const std::vector<T>& of_objects) const {
     std::vector<T> column;
     column.reserve(shown_.size());
     for (const std::uint32_t object : shown_.objects()) column.push_back(of_objects[object]);
     return binary_answer(std::span<const T>(column));
 }
 
-Answer SceneSource::name_column() const {
+Answer FrameSource::name_column() const {
     Json names = Json::array();
     for (const std::uint32_t object : shown_.objects()) names.push_back(contents_.names[object]);
     return json_answer(names);
 }
 
-Answer SceneSource::level_column(Frame& frame) {
+Answer FrameSource::level_column(Frame& frame) {
     const std::vector<std::uint8_t> levels = levels_of(frame.data, octants(frame));
     return shown_column(levels);
 }
 
-std::vector<std::string> SceneSource::greeting(const std::string& path) {
+std::vector<std::string> FrameSource::greeting(const std::string& path) {
     if (!path.empty()) return {};
     return {loading_ ? progress_message("finding pairs", progress_) : ready_message()};
 }
 
-void SceneSource::prepare_export(Export how) { export_ = std::move(how); }
+void FrameSource::prepare_export(Export how) { export_ = std::move(how); }
 
-std::vector<std::string> SceneSource::addresses() const {
+std::vector<std::string> FrameSource::addresses() const {
     std::vector<std::string> all = {"view.json"};
     if (!shown_.in_order()) all.push_back("shown.u32");
     if (!contents_.groups.empty()) all.push_back("groups.u32");
@@ -368,7 +368,7 @@ std::vector<std::string> SceneSource::addresses() const {
     return all;
 }
 
-std::vector<std::string> SceneSource::addresses_of(std::uint64_t number) {
+std::vector<std::string> FrameSource::addresses_of(std::uint64_t number) {
     const std::string f = std::to_string(number);
     std::vector<std::string> all;
     for (const char* const what : {"frame/#.json", "frame/#.f32", "partners/#.u32", "levels/#.u8", "pairs/#.u32",

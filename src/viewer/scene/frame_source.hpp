@@ -1,4 +1,4 @@
-// SceneSource: offers a scene of files, frame by frame (kind "scene" of viewer/protocol.md).
+// FrameSource: offers a scene of files, frame by frame (kind "scene" of viewer/protocol.md).
 //
 // - Frames are found when the page requests them. The last few are kept.
 // - The first find() comes from load(). Until it ends, the source is loading.
@@ -17,12 +17,12 @@
 
 namespace octopair::viewer {
 
-class SceneSource final : public Source {
+class FrameSource final : public Source {
 public:
     static constexpr std::size_t default_most_shown = 200'000;
 
     /// `finder` is borrowed. `most_shown`: largest number of objects in the overview.
-    SceneSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown = default_most_shown);
+    FrameSource(SceneContents contents, FrameFinder& finder, std::size_t most_shown = default_most_shown);
 
     /// Finds the first frame. `progress` may be empty. Throws: what the finder throws.
     void load(const ProgressSink& progress);

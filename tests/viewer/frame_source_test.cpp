@@ -1,4 +1,4 @@
-// SceneSource on a scene in memory.
+// FrameSource on a scene in memory.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,7 +8,7 @@
 
 #include "octopair/error.hpp"
 #include "viewer/fake_finder.hpp"
-#include "viewer/scene/scene_source.hpp"
+#include "viewer/scene/frame_source.hpp"
 #include "viewer/shown_frames.hpp"
 
 namespace octopair::test {
@@ -17,9 +17,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(SceneSource, LoadsTheFirstFrame) {
+TEST(FrameSource, LoadsTheFirstFrame) {
     FakeFinder finder(1, 1, 50);
-    SceneSource source(contents_of(50, false), finder);
+    FrameSource source(contents_of(50, false), finder);
     EXPECT_TRUE(source.loading());
     EXPECT_EQ(Json::parse(source.greeting("")[0])["event"], "progress");
     std::vector<double> progress;
@@ -43,9 +43,9 @@ TEST(SceneSource, LoadsTheFirstFrame) {
     EXPECT_EQ(body_of(source, "began/0.u32"), "none");
 }
 
-TEST(SceneSource, UnknownAddressesHaveNoData) {
+TEST(FrameSource, UnknownAddressesHaveNoData) {
     FakeFinder finder(2, 3, 20);
-    SceneSource source(contents_of(20, true), finder);
+    FrameSource source(contents_of(20, true), finder);
     source.load({});
     for (const std::string address : {"x",
                                       "frame",
@@ -83,10 +83,10 @@ TEST(SceneSource, UnknownAddressesHaveNoData) {
     }
 }
 
-TEST(SceneSource, FramesInAnyOrder) {
+TEST(FrameSource, FramesInAnyOrder) {
     constexpr std::uint64_t frames = 12;
     FakeFinder finder(3, frames, 60);
-    SceneSource source(contents_of(60, true), finder);
+    FrameSource source(contents_of(60, true), finder);
     source.load({});
     Random random(3);
     for (int i = 0; i < 100; ++i) {
@@ -104,9 +104,9 @@ TEST(SceneSource, FramesInAnyOrder) {
     }
 }
 
-TEST(SceneSource, KeepsTheLastFrames) {
+TEST(FrameSource, KeepsTheLastFrames) {
     FakeFinder finder(4, 5, 20);
-    SceneSource source(contents_of(20, true), finder);
+    FrameSource source(contents_of(20, true), finder);
     source.load({});
     (void)body_of(source, "frame/0.f32");
     (void)body_of(source, "pairs/0.u32");
@@ -118,9 +118,9 @@ TEST(SceneSource, KeepsTheLastFrames) {
     EXPECT_EQ(finder.finds, 4);
 }
 
-TEST(SceneSource, Timeline) {
+TEST(FrameSource, Timeline) {
     FakeFinder finder(5, 30, 40);
-    SceneSource source(contents_of(40, true), finder);
+    FrameSource source(contents_of(40, true), finder);
     source.load({});
     EXPECT_EQ(json_of(source, "timeline.json")["done"], 0);
     std::vector<std::uint64_t> told;
@@ -136,10 +136,10 @@ TEST(SceneSource, Timeline) {
     }
 }
 
-TEST(SceneSource, CountingEndsAtAStopRequest) {
+TEST(FrameSource, CountingEndsAtAStopRequest) {
     FakeFinder finder(6, 1000, 5);
     finder.pause = 1ms;
-    SceneSource source(contents_of(5, true), finder);
+    FrameSource source(contents_of(5, true), finder);
     source.load({});
     std::stop_source stop;
     std::thread counting([&] { source.count_frames({}, stop.get_token()); });
@@ -149,11 +149,11 @@ TEST(SceneSource, CountingEndsAtAStopRequest) {
     EXPECT_LT(json_of(source, "timeline.json")["done"], 1000);
 }
 
-TEST(SceneSource, AnswersWhileFramesAreCounted) {
+TEST(FrameSource, AnswersWhileFramesAreCounted) {
     constexpr std::uint64_t frames = 400;
     FakeFinder finder(7, frames, 20);
     finder.pause = 2ms;
-    SceneSource source(contents_of(20, true), finder);
+    FrameSource source(contents_of(20, true), finder);
     source.load({});
     std::jthread counting([&](const std::stop_token& stop) { source.count_frames({}, stop); });
     std::this_thread::sleep_for(20ms);
@@ -166,10 +166,10 @@ TEST(SceneSource, AnswersWhileFramesAreCounted) {
     }
 }
 
-TEST(SceneSource, AFrameThatCannotBeRead) {
+TEST(FrameSource, AFrameThatCannotBeRead) {
     FakeFinder finder(8, 5, 20);
     finder.broken_frame = 2;
-    SceneSource source(contents_of(20, true), finder);
+    FrameSource source(contents_of(20, true), finder);
     source.load({});
     EXPECT_THROW(body_of(source, "frame/2.json"), Error);
     EXPECT_THROW(body_of(source, "frame/3.json"), Error);
@@ -181,30 +181,30 @@ TEST(SceneSource, AFrameThatCannotBeRead) {
     EXPECT_EQ(source.counted(), 2u);
 }
 
-TEST(SceneSource, AFrameThatDoesNotFitIntoMemory) {
+TEST(FrameSource, AFrameThatDoesNotFitIntoMemory) {
     FakeFinder finder(8, 5, 20);
     finder.broken_frame = 2;
     finder.lacks_memory = true;
-    SceneSource source(contents_of(20, true), finder);
+    FrameSource source(contents_of(20, true), finder);
     source.load({});
     EXPECT_EQ(json_of(source, "timeline.json").count("failed"), 0u);
     EXPECT_THROW(source.count_frames({}, {}), Error);
     EXPECT_EQ(json_of(source, "timeline.json")["failed"], "out of memory");
 }
 
-TEST(SceneSource, CountsTheObjectsThatExist) {
+TEST(FrameSource, CountsTheObjectsThatExist) {
     FakeFinder finder(9, 2, 20);
     finder.exists.assign(20, 1);
     finder.exists[3] = finder.exists[7] = 0;
-    SceneSource source(contents_of(20, true), finder);
+    FrameSource source(contents_of(20, true), finder);
     source.load({});
     EXPECT_EQ(json_of(source, "frame/1.json")["objects"], 18);
     EXPECT_EQ(json_of(source, "view.json")["objects"], 20);
 }
 
-TEST(SceneSource, OfALargeScene) {
+TEST(FrameSource, OfALargeScene) {
     FakeFinder finder(9, 1, 300);
-    SceneSource source(contents_of(300, false), finder, 40);
+    FrameSource source(contents_of(300, false), finder, 40);
     source.load({});
     const Json view = json_of(source, "view.json");
     EXPECT_EQ(view["shown"], 40);
@@ -224,9 +224,9 @@ TEST(SceneSource, OfALargeScene) {
     EXPECT_THROW(body_of(source, "near/0.bin"), Error);
 }
 
-TEST(SceneSource, OfNoObjects) {
+TEST(FrameSource, OfNoObjects) {
     FakeFinder finder(10, 1, 0);
-    SceneSource source(contents_of(0, false), finder);
+    FrameSource source(contents_of(0, false), finder);
     source.load({});
     EXPECT_EQ(json_of(source, "view.json")["shown"], 0);
     EXPECT_EQ(body_of(source, "frame/0.f32"), "");
