@@ -17,6 +17,7 @@
 
 #include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
+#include "machine/median.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/pipeline.hpp"
 #include "samples/meshes.hpp"
@@ -121,11 +122,6 @@ double seconds_of(const Find& find, std::vector<Pair>& found) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double median(std::vector<double> numbers) {
-    std::sort(numbers.begin(), numbers.end());
-    return numbers[numbers.size() / 2];
-}
-
 int run(const Request& request) {
     const Scene scene = make_scene(request);
     std::vector<double> ours, theirs;
@@ -135,10 +131,11 @@ int run(const Request& request) {
         theirs.push_back(seconds_of([&] { return by_fcl(scene); }, found_by_fcl));
     }
     const bool agree = found == found_by_fcl;
-    const double ratio = median(theirs) / median(ours);
+    const double ratio = bench::median(theirs) / bench::median(ours);
     fmt::print("{} objects of {} triangles, {} rounds\n", request.objects, scene.mesh.triangles.size(), request.rounds);
-    fmt::print("  octopair, {} thread(s)  {:8.3f} s  {} collisions\n", request.threads, median(ours), found.size());
-    fmt::print("  FCL, 1 thread          {:8.3f} s  {} collisions{}\n", median(theirs), found_by_fcl.size(),
+    fmt::print("  octopair, {} thread(s)  {:8.3f} s  {} collisions\n", request.threads, bench::median(ours),
+               found.size());
+    fmt::print("  FCL, 1 thread          {:8.3f} s  {} collisions{}\n", bench::median(theirs), found_by_fcl.size(),
                agree ? "" : "  DIFFERS");
     fmt::print("  FCL / octopair         {:8.2f}\n", ratio);
     if (!request.json.empty()) {

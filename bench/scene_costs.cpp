@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "measured_memory.hpp"
 #include "octopair/octopair.hpp"
-#include "resident_memory.hpp"
 #include "samples/scenes.hpp"
 
 namespace {

@@ -21,6 +21,7 @@
 
 #include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
+#include "machine/median.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"
 #include "self_intersections/cgal.hpp"
@@ -44,11 +45,7 @@ struct Contender {
     std::vector<Pair> pairs = {};
     std::vector<double> seconds = {};
 
-    double median() const {
-        auto sorted = seconds;
-        std::sort(sorted.begin(), sorted.end());
-        return sorted[sorted.size() / 2];
-    }
+    double median() const { return bench::median(seconds); }
 };
 
 /// Returns triangles with the positions of their corners. Several threads write them into uninitialised memory.

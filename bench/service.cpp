@@ -14,6 +14,7 @@
 
 #include "io/files/atomic_file.hpp"
 #include "machine/machine.hpp"
+#include "machine/median.hpp"
 #include "service/measurements.hpp"
 #include "service/server_process.hpp"
 

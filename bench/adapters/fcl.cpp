@@ -27,6 +27,7 @@
 #include <string>
 #include <vector>
 
+#include "machine/median.hpp"
 #include "octopair/fcl/broad_phase_manager.hpp"
 
 namespace {
@@ -166,10 +167,7 @@ struct Runner {
     std::vector<double> times = {};
     double result = 0;  ///< number of pairs, or distance
 
-    double median() {
-        std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
-        return times[times.size() / 2];
-    }
+    double median() const { return octopair::bench::median(times); }
     /// Updates the manager after all objects moved, or those of `moved`.
     void update(const Pointers& all, const Pointers* moved = nullptr) {
         if (rebuilds) {

@@ -8,17 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "machine/median.hpp"
+
 namespace octopair::bench {
 
 inline double seconds_of(const std::function<void()>& work) {
     const auto begin = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-inline double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
 }
 
 /// Prints medians in seconds as milliseconds, and how many times as fast the second is.

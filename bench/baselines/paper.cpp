@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "baselines/baselines.hpp"
-#include "baselines/paper_sort.hpp"
 #include "baselines/paper_steps.hpp"
 
 namespace octopair::baselines {

@@ -46,6 +46,11 @@ struct PaperSlice {
 /// Returns the octal codes of the slice's objects, in the order of the objects.
 PaperList paper_codes(const PaperSlice& slice, const PaperOctree& octree);
 
+/// Sorts the entries of a slave into the pre-order of the octree, then by object: by std::sort, where the paper uses qsort, or by the radix
+/// sort of octopair. Deeper than level 9 a code does not fit into a key of 32 bits, so std::sort is used.
+/// Requires: entries ascend by object, and codes have at most `level`.
+void sort_entries(PaperList& entries, PaperSort sort, unsigned level);
+
 /// Merges sorted lists, two and two.
 PaperList merge_paper_lists(std::vector<PaperList> lists);
 

@@ -1,7 +1,10 @@
 // Costs of a call on the ranks of a cluster, step by step, and derived quantities.
 #pragma once
 
+#include <mpi.h>
+
 #include <cstdint>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -78,5 +81,12 @@ inline constexpr Step computing_steps[] = {
 /// Writes or reads a JSON array with one object per measurement. Throws: Error{engine_failed} for text of another form.
 std::string measured_json(const std::vector<Measured>& all);
 std::vector<Measured> measured_of(const std::string& json);
+
+// measured_on_ranks.cpp
+
+/// Collective. Measures `rounds` calls of all ranks together, then at least as many calls of each rank alone. Warm-up
+/// calls are not counted. Each rank makes its slice of the scene. Rank 0 returns the costs of all ranks. Pairs are
+/// listed in octal order, by ranks with one thread.
+Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop);
 
 }  // namespace octopair::cluster

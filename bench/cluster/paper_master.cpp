@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "baselines/paper_sort.hpp"
+#include "baselines/paper_steps.hpp"
 
 namespace octopair::cluster {
 

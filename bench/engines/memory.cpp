@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "engines/contenders.hpp"
-#include "measured_apart.hpp"
+#include "measured_memory.hpp"
 #include "samples/scenes.hpp"
 
 namespace octopair::bench {

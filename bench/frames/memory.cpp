@@ -3,9 +3,8 @@
 #include <algorithm>
 
 #include "frames/motion.hpp"
-#include "measured_apart.hpp"
+#include "measured_memory.hpp"
 #include "octopair/scene.hpp"
-#include "resident_memory.hpp"
 #include "samples/scenes.hpp"
 
 namespace octopair::bench {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machine/median.hpp"
+
 namespace octopair::paper {
 
 namespace {
@@ -36,19 +38,12 @@ Growth growth_of(const Fits& fits) {
 
 }  // namespace
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 double relative_spread(const std::vector<double>& values) {
-    const double middle = median(values);
+    const double middle = bench::median(values);
     if (middle == 0) return 0;
     std::vector<double> distances = values;
     for (double& value : distances) value = std::abs(value - middle);
-    return median(distances) / middle;
+    return bench::median(distances) / middle;
 }
 
 Fits fit(std::span<const Sample> samples) {

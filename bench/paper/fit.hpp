@@ -10,8 +10,6 @@
 
 namespace octopair::paper {
 
-/// Returns the median: the upper of the two middle values for an even number, 0 for no values.
-double median(std::vector<double> values);
 /// Returns the median distance from the median, relative to the median.
 double relative_spread(const std::vector<double>& values);
 

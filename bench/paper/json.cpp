@@ -1,4 +1,5 @@
-#include "paper/json.hpp"
+// Study as JSON.
+#include "paper/study.hpp"
 
 #include <nlohmann/json.hpp>
 

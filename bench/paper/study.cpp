@@ -9,6 +9,7 @@
 
 #include "base/stop.hpp"
 #include "baselines/baselines.hpp"
+#include "machine/median.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
@@ -220,7 +221,7 @@ Steps Point::median_steps() const {
         std::vector<double> seconds;
         seconds.reserve(runs.size());
         for (const Run& run : runs) seconds.push_back(run.steps.*step);
-        medians.*step = median(std::move(seconds));
+        medians.*step = bench::median(std::move(seconds));
     }
     return medians;
 }

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "machine/median.hpp"
 #include "paper/fit.hpp"
 
 namespace octopair::paper {
@@ -65,7 +66,7 @@ struct Point {
     std::vector<Run> runs;
 
     std::vector<double> seconds() const;
-    double median_seconds() const { return median(seconds()); }
+    double median_seconds() const { return bench::median(seconds()); }
     /// Returns the median of each step, computed separately.
     Steps median_steps() const;
 };
@@ -95,5 +96,8 @@ using StudyProgress = std::function<void(std::string_view activity, double done)
 /// Error{cancelled} after a stop request. Then a run of octopair stops at once, and a run of the paper's algorithm
 /// completes. Memory: the paper's algorithm holds all octants that each box meets.
 Study measure(const StudyPlan& plan, const StudyProgress& progress, const std::stop_token& stop);
+
+/// Returns the study as one JSON object (docs/formats.md), ended by a newline: every measured time, and derived quantities (json.cpp).
+std::string study_json(const Study& study);
 
 }  // namespace octopair::paper

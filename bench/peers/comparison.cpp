@@ -7,6 +7,8 @@
 #include <new>
 #include <optional>
 
+#include "machine/median.hpp"
+
 namespace octopair::bench {
 
 namespace {
@@ -79,12 +81,7 @@ void run_round(std::vector<Runner>& runners, std::span<const Box3f> boxes, const
 
 }  // namespace
 
-double Row::median() const {
-    std::vector<double> sorted = seconds.empty() ? std::vector{first_seconds} : seconds;
-    const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    return *middle;
-}
+double Row::median() const { return seconds.empty() ? first_seconds : bench::median(seconds); }
 
 std::vector<Row> compare(const Scene& scene, const ComparisonPlan& plan, const ComparisonProgress& progress) {
     std::vector<Runner> runners = make_runners(scene, plan);

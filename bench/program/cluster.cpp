@@ -7,7 +7,7 @@
 
 #include "cli/command/interrupt.hpp"
 #include "cli/command/option_values.hpp"
-#include "cluster/on_ranks.hpp"
+#include "cluster/measured.hpp"
 #include "cluster/study.hpp"
 #include "program/on_ranks.hpp"
 #include "program/options.hpp"

@@ -10,7 +10,6 @@
 #include "cli/command/interrupt.hpp"
 #include "cli/command/option_values.hpp"
 #include "octopair/error.hpp"
-#include "paper/json.hpp"
 #include "paper/study.hpp"
 #include "paper/tables.hpp"
 #include "program/options.hpp"

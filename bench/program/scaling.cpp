@@ -13,7 +13,7 @@
 #include "program/options.hpp"
 #include "program/study_output.hpp"
 #include "program/subcommands.hpp"
-#include "scaling/on_ranks.hpp"
+#include "scaling/contest.hpp"
 #include "scaling/study.hpp"
 
 namespace octopair::bench {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "machine/median.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::scaling {
@@ -40,12 +41,7 @@ std::string setup_text(const Setup& setup) {
     return counted(setup.ranks, "rank") + (setup.threads > 1 ? " x " + counted(setup.threads, "thread") : "");
 }
 
-double Entrant::median() const {
-    std::vector<double> sorted = seconds;
-    const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    return *middle;
-}
+double Entrant::median() const { return bench::median(seconds); }
 
 const Entrant* Contest::find(const Setup& setup) const {
     const auto found = std::ranges::find(entrants, setup, &Entrant::setup);

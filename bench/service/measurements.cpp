@@ -6,6 +6,7 @@
 #include <random>
 #include <thread>
 
+#include "machine/median.hpp"
 #include "octopair/client.hpp"
 #include "octopair/error.hpp"
 #include "octopair/remote_scene.hpp"
@@ -149,11 +150,6 @@ SceneAgainstLocal measure_scene(const std::string& address, std::uint64_t object
                       std::ranges::equal(here->ended, there->ended);
     }
     return result;
-}
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return quantile(values, 0.5);
 }
 
 double quantile(const std::vector<double>& values, double part) {

@@ -40,7 +40,6 @@ struct SceneAgainstLocal {
 SceneAgainstLocal measure_scene(const std::string& address, std::uint64_t objects, std::uint64_t moved,
                                 unsigned frames);
 
-double median(std::vector<double> values);
 /// Returns a quantile. Requires: ascending values.
 double quantile(const std::vector<double>& values, double part);
 

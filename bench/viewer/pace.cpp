@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "machine/median.hpp"
 #include "octopair/scene.hpp"
 #include "octopair/view.hpp"
 #include "viewer/pages.hpp"
@@ -29,12 +30,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
-    return values[values.size() / 2];
-}
 
 /// A scene with about half a pair per object, of which 1 % moves in each step.
 class World {
@@ -135,14 +130,14 @@ void measure(World& world, const char* pace, int rounds, int steps, std::chrono:
     for (int round = 0; round < rounds; ++round) {
         for (Case& one : cases) run(world, one, steps, period);
     }
-    const double alone = median(cases.front().steps);
+    const double alone = octopair::bench::median(cases.front().steps);
     std::printf("\n%s: %d rounds of %d steps\n%-24s %9s %7s %11s %13s %8s %12s %12s\n", pace, rounds, steps, "case",
                 "step/us", "ratio", "show/us", "longest/us", "frames", "difference/B", "whole/B");
     for (const Case& one : cases) {
-        const double step = median(one.steps);
+        const double step = octopair::bench::median(one.steps);
         std::printf("%-24s %9.1f %7.3f %11.3f %13.1f %8llu %12.0f %12.0f\n", one.name, step * 1e6, step / alone,
-                    median(one.shows) * 1e6, one.longest_show * 1e6, static_cast<unsigned long long>(one.bytes.frames),
-                    one.bytes.median_difference, one.bytes.whole);
+                    octopair::bench::median(one.shows) * 1e6, one.longest_show * 1e6,
+                    static_cast<unsigned long long>(one.bytes.frames), one.bytes.median_difference, one.bytes.whole);
     }
 }
 

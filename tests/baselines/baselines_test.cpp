@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "baselines/paper_sort.hpp"
+#include "baselines/paper_steps.hpp"
 #include "samples/random.hpp"
 #include "samples/scenes.hpp"
 #include "support/cases.hpp"

@@ -1,4 +1,5 @@
-#include "cluster/on_ranks.hpp"
+// Measures the costs of calls on the ranks.
+#include "cluster/measured.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "cluster/paper_master.hpp"
+#include "cluster/scene_slice.hpp"
 #include "engine/mpi/comm/message_tape.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
@@ -15,21 +17,6 @@
 namespace octopair::cluster {
 
 namespace {
-
-/// Returns objects [begin, end) of the scene.
-std::vector<Box3f> make_slice(const Setup& setup, std::uint64_t begin, std::uint64_t end) {
-    std::vector<Box3f> own;
-    if (begin == end) return own;
-    own.reserve(std::size_t(end - begin));
-    std::uint64_t at = 0;
-    samples::generate_scene({setup.scene, setup.objects, 1}, [&](std::span<const Box3f> boxes) {
-        const std::uint64_t first = std::clamp(begin, at, at + boxes.size());
-        const std::uint64_t last = std::clamp(end, at, at + boxes.size());
-        own.insert(own.end(), boxes.begin() + std::ptrdiff_t(first - at), boxes.begin() + std::ptrdiff_t(last - at));
-        at += boxes.size();
-    });
-    return own;
-}
 
 template <typename Of, typename Number, typename Class>
 Number median(const std::vector<Of>& runs, Number Class::*member) {
@@ -130,7 +117,7 @@ public:
             if (paper) return number == 0 ? 0 : setup.objects;
             return setup.objects * std::uint64_t(number) / std::uint64_t(ranks_);
         };
-        own_ = make_slice(setup, part(rank_), part(rank_ + 1));
+        own_ = make_slice({setup.scene, setup.objects}, part(rank_), part(rank_ + 1));
         if (paper) {
             calls_ = std::make_unique<PaperCalls>(comm, setup.ranks_per_machine, own_);
         } else {

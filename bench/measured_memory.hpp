@@ -1,10 +1,13 @@
-// Runs a memory measurement in its own process, without memory left by other cases.
+// Measurements of memory: in a process of their own, without memory left by other cases, and from Linux.
 #pragma once
 
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 
 namespace octopair::bench {
@@ -37,5 +40,19 @@ auto measured_apart(const Measure& measure) {
     if (!told || status != 0) throw std::runtime_error("the process that measures memory failed");
     return use;
 }
+
+// Resident memory of this process.
+
+/// Returns a line of /proc/self/status in bytes, or 0 if the line is missing. VmRSS: current; VmHWM: highest since
+/// forget_peak().
+inline double status_bytes(const std::string& name) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with(name + ":")) return std::strtod(line.c_str() + name.size() + 1, nullptr) * 1024;
+    }
+    return 0;
+}
+
+inline void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 }  // namespace octopair::bench

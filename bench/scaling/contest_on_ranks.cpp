@@ -1,4 +1,5 @@
-#include "scaling/on_ranks.hpp"
+// Holds a contest on the ranks: all setups take turns.
+#include "scaling/contest.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <span>
 #include <thread>
 
+#include "cluster/scene_slice.hpp"
 #include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
 #include "samples/scenes.hpp"
@@ -35,25 +37,12 @@ public:
         auto found = std::ranges::find_if(made_, [&](const Made& made) {
             return made.objects == objects && made.begin == begin && made.boxes.size() >= length;
         });
-        if (found == made_.end()) found = made_.insert(found, {objects, begin, make(objects, begin, end)});
+        if (found == made_.end())
+            found = made_.insert(found, {objects, begin, cluster::make_slice({scene_, objects}, begin, end)});
         return std::span<const Box3f>(found->boxes).first(length);
     }
 
 private:
-    std::vector<Box3f> make(std::uint64_t objects, std::uint64_t begin, std::uint64_t end) const {
-        std::vector<Box3f> own;
-        own.reserve(std::size_t(end - begin));
-        std::uint64_t at = 0;
-        samples::generate_scene({scene_, objects, 1}, [&](std::span<const Box3f> boxes) {
-            const std::uint64_t first = std::clamp(begin, at, at + boxes.size());
-            const std::uint64_t last = std::clamp(end, at, at + boxes.size());
-            own.insert(own.end(), boxes.begin() + std::ptrdiff_t(first - at),
-                       boxes.begin() + std::ptrdiff_t(last - at));
-            at += boxes.size();
-        });
-        return own;
-    }
-
     std::string scene_;
     struct Made {
         std::uint64_t objects, begin;
