@@ -1,6 +1,5 @@
 // Readers of options: configuration files and numbers.
 #include "cli/command/command.hpp"
-#include "cli/command/config_file.hpp"
 #include "cli/command/option_values.hpp"
 #include "near_miss/readers.hpp"
 #include "octopair/error.hpp"

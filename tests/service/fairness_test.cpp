@@ -13,7 +13,7 @@
 #include "service/served.hpp"
 #include "service/server/jobs/budget.hpp"
 #include "service/server/jobs/fair_order.hpp"
-#include "service/server/jobs/kept_engine.hpp"
+#include "service/server/jobs/job_scheduler.hpp"
 #include "service/server_program.hpp"
 #include "support/kinds.hpp"
 

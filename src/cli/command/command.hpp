@@ -104,4 +104,11 @@ private:
     std::unique_ptr<CLI::App> app_;
 };
 
+// config_file.cpp
+
+/// Sets the options of `file` that the command line does not set. A line `NAME = VALUE` of the file sets the option --NAME.
+/// Requires: `command` was parsed.
+/// Throws: Error{usage} that names the file, and the option or the line; Error{io_failed, bad_input} if the file cannot be read.
+void apply_config(const Command& command, const std::string& file);
+
 }  // namespace octopair::cli

@@ -1,5 +1,8 @@
-#include "cli/command/config_file.hpp"
-
+// Reads options of a subcommand from a file. A line `NAME = VALUE` sets the option --NAME.
+//
+// The form is a part of TOML: a value is a string in quotes without escapes, or a word (TOML would want quotes around some words). Each
+// line is such a line, empty, or a comment after '#'. Anything else is refused: CLI11's reader accepts most files with a slip, and then
+// sets other options than their author meant.
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
@@ -10,6 +13,7 @@
 #include <vector>
 
 #include "base/descriptor.hpp"
+#include "cli/command/command.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

@@ -1,4 +1,5 @@
 // DetectReport: what came of a run of `octopair detect`, with its texts: a summary for people, and statistics in JSON.
+// Start here to change the summary and the statistics of detect.
 #pragma once
 
 #include <array>

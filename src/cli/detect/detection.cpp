@@ -7,8 +7,8 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/frame_search.hpp"
-#include "cli/detect/input_warnings.hpp"
 #include "cli/detect/pipeline_options.hpp"
+#include "cli/input/search_inputs.hpp"
 #include "io/json/json_fields.hpp"
 #include "octopair/error.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE

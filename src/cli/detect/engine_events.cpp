@@ -2,7 +2,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/event_source.hpp"
+#include "cli/detect/event_detection.hpp"
 #include "octopair/engine.hpp"
 
 namespace octopair::cli {

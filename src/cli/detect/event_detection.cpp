@@ -7,8 +7,6 @@
 
 #include "base/timed.hpp"
 #include "cli/command/progress_line.hpp"
-#include "cli/detect/event_source.hpp"
-#include "cli/detect/input_warnings.hpp"
 #include "cli/input/frame_set.hpp"
 #include "cli/input/search_inputs.hpp"
 #include "io/files/atomic_file.hpp"

@@ -18,7 +18,6 @@
 #include "verification/verifier.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/detect/filter_chain.hpp"
-#include "cli/output/collision_piece.hpp"
 #endif
 
 namespace octopair::cli {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/event_source.hpp"
+#include "cli/detect/event_detection.hpp"
 #include "cli/server/server_choice.hpp"
 #include "octopair/remote_scene.hpp"
 #include "octopair/scene.hpp"

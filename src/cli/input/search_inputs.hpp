@@ -1,10 +1,11 @@
-// Inputs of a search: one set, or the two sets of a join, with their frames and paddings.
+// Inputs of a search: one set, or the two sets of a join, with their frames and paddings, and warnings about them.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
@@ -54,5 +55,13 @@ struct WholeInputs {
     /// Throws: what read_input_set(), make_shaped(), joint_frames() and Paddings throw.
     void read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop);
 };
+
+/// Returns the warnings about the inputs, each one line: those of their readers, inputs without objects, coarse coordinates, and different
+/// axes. Coordinates are coarse if they were rounded to float32 in steps that are large
+/// against the scene or the tolerance. Requires: the sets are whole and have boxes.
+std::vector<std::string> input_warnings(const DetectRequest& request, const SetPair& sets);
+
+/// For --fail-on-collision: a check of nothing must not pass. Throws: Error{bad_input} that names a file without objects.
+void refuse_empty_parts(std::span<const Part> parts);
 
 }  // namespace octopair::cli

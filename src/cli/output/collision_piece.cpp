@@ -1,6 +1,9 @@
-#include "cli/output/collision_piece.hpp"
-
+// CollisionPiece: the collisions of one rank, stored until rank 0 writes those of all ranks.
+//
+// They are stored in blocks of trivially copyable values, so that ranks can send the arrays without conversion.
 #include <algorithm>
+
+#include "cli/output/piece_output.hpp"
 
 namespace octopair::cli {
 

@@ -14,9 +14,6 @@
 #include "io/formats/format_choice.hpp"
 #include "io/results/pair_writer.hpp"
 #include "octopair/error.hpp"
-#ifdef OCTOPAIR_WITH_PIPELINE
-#include "cli/output/collision_piece.hpp"
-#endif
 
 namespace octopair::cli {
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/input_warnings.hpp"
 #include "cli/detect/pipeline_options.hpp"
+#include "cli/input/search_inputs.hpp"
 #include "cli/output/found_writer.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/results/collision_writer.hpp"
 #include "io/results/html_report.hpp"
 #ifdef OCTOPAIR_WITH_VIEWER
-#include "cli/view/shown_scene.hpp"
+#include "cli/view/view.hpp"
 #include "octopair/error.hpp"
 #include "viewer/scene/page_file.hpp"
 #endif

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "cli/command/command.hpp"
-#include "cli/command/config_file.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/server/supervisor.hpp"
 #include "octopair/error.hpp"

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include "cli/command/option_values.hpp"
-#include "cli/view/shown_scene.hpp"
 #include "cli/view/view.hpp"
 #include "io/files/input_file.hpp"
 #include "scene/recording/replay.hpp"

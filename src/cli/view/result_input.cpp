@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/view/shown_scene.hpp"
 #include "cli/view/view.hpp"
 #include "io/results/result_file.hpp"
 #include "octopair/error.hpp"

@@ -6,7 +6,6 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/pipeline_options.hpp"
-#include "cli/view/shown_scene.hpp"
 #include "cli/view/view.hpp"
 #include "io/files/failure.hpp"
 #include "io/results/result_file.hpp"

@@ -1,10 +1,10 @@
-#include "cli/view/shown_scene.hpp"
-
+// An input set as a scene of the viewer.
 #include <algorithm>
 #include <cmath>
 
 #include "cli/detect/filter_chain.hpp"
-#include "cli/detect/input_warnings.hpp"
+#include "cli/input/search_inputs.hpp"
+#include "cli/view/view.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
 #include "viewer/scene/scene_contents.hpp"

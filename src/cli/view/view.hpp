@@ -1,13 +1,17 @@
 // The parts of `octopair view`: options, the inputs that it can show, and the view of a server.
+// Start here to add a new input of view.
 #pragma once
 
 #include <memory>
 #include <stop_token>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command/command.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
+#include "cli/input/input_set.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/server/page_server.hpp"
 
@@ -59,6 +63,17 @@ bool is_recording(const std::string& path);
 /// Replays a recording. Keeps the steps in memory, and stops at a limit, which a notice tells.
 /// Throws: what replay() throws.
 LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop);
+
+// shown_scene.cpp
+
+/// Returns the axis as pages get it: "y", "z" or empty.
+std::string axis_word(io::UpAxis up);
+
+/// Returns names, groups, shapes, axes and warnings of a set. The members `title` and `details` stay empty.
+viewer::SceneContents shown_scene(const DetectRequest& request, const InputSet& set);
+
+/// Returns the details of an object that the files give, such as {"type", "IfcBeam"}.
+std::vector<std::pair<std::string, std::string>> shown_details(const InputSet& set, std::uint32_t object);
 
 // server_view.cpp
 

@@ -1,4 +1,4 @@
-// Address and Answer: a request of the page, and the data that it gets (viewer/protocol.md).
+// Address and Answer: a request of the page, and the data that it gets (viewer/protocol.md); and the messages that pages get.
 #pragma once
 
 #include <cstdint>
@@ -62,5 +62,20 @@ std::string gunzip(std::string_view compressed, std::size_t size);
 
 /// Returns the bytes as text in base64.
 std::string base64(std::string_view bytes);
+
+// Messages to pages over the WebSocket (viewer/protocol.md), as JSON.
+
+/// Says how far an activity is. `done`: from 0 to 1.
+std::string progress_message(std::string_view what, double done);
+/// The data can be read.
+std::string ready_message();
+/// The data will never be there.
+std::string failed_message(std::string_view why);
+/// The watched server does not answer, and is asked again.
+std::string waiting_message(std::string_view why);
+/// `done`: number of frames that timeline.json has.
+std::string timeline_message(std::uint64_t done);
+/// The watched scene has ended.
+std::string closed_message();
 
 }  // namespace octopair::viewer

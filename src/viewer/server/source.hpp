@@ -1,6 +1,6 @@
 // Source: data that the server of the page offers. A page server has one source.
 //
-// Threads   get() is called by one thread at a time; live_frame() and describe() by the thread of the connections.
+// Threads   get() is called by one thread at a time; live_frame() and greeting() by the thread of the connections.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +8,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "viewer/server/answer.hpp"
 
 namespace octopair::viewer {
-
-// Messages to pages over the WebSocket (viewer/protocol.md), as JSON.
-
-/// `done`: from 0 to 1.
-std::string progress_message(std::string_view what, double done);
-std::string ready_message();
-std::string failed_message(std::string_view why);
-/// The watched server does not answer, and is asked again.
-std::string waiting_message(std::string_view why);
-/// `done`: number of frames that timeline.json has.
-std::string timeline_message(std::uint64_t done);
-std::string closed_message();
 
 /// A live frame that is sent to several pages.
 using Message = std::shared_ptr<const std::string>;
