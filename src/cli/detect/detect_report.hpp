@@ -22,39 +22,39 @@ struct DetectSeconds {
     double total = 0, read = 0;
     double prepare = 0;  ///< of shapes and filters, before the first search
     double detect = 0, filter = 0, write = 0;
-    double verify = 0;  ///< if it was asked for
+    double verify = 0;  ///< 0 without --verify
 };
 
-/// Rows written.
+/// Numbers of rows written.
 struct EventCounts {
     std::uint64_t began = 0, ended = 0;
 };
 
 struct DetectReport {
-    std::uint64_t objects = 0;  ///< of both sets, in each frame
+    std::uint64_t objects = 0;  ///< number of objects of both sets in each frame
     std::uint64_t frames = 1;
     bool moving = false;
-    std::uint64_t pairs = 0;  ///< what came out, of all frames
+    std::uint64_t pairs = 0;  ///< pairs written or counted, of all frames
     bool truncated = false;
-    bool verified = false;                                       ///< the pairs of boxes in each frame so far
-    bool collisions_verified = false;                            ///< also the collisions, by certificates
-    std::string not_checked;                                     ///< in one of the frames at least, for users
-    std::uint64_t candidates = 0;                                ///< pairs of boxes, as far as they were looked for
-    std::vector<FilterCounts> filters;                           ///< of all frames
+    bool verified = false;              ///< true if the pairs of boxes of each frame so far were checked
+    bool collisions_verified = false;   ///< true if the collisions were checked by certificates, too
+    std::string not_checked;            ///< for users: what the check of at least one frame left out
+    std::uint64_t candidates = 0;       ///< pairs of boxes that the search found before filters
+    std::vector<FilterCounts> filters;  ///< of all frames
     std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
     std::optional<double> tolerance;                             ///< of the exact stages
     bool tolerance_is_precision = false;                         ///< the tolerance is that of float32
     std::uint64_t open_objects = 0;                              ///< objects whose geometry is not closed
     std::vector<std::string> first_open;                         ///< names of the first of them
     std::vector<std::string> warnings;                           ///< about the inputs, after input_warnings()
-    std::optional<io::ChangeCounts> changes;                     ///< where there is a baseline
-    std::optional<EventCounts> events;  ///< if they were asked for; then `entries` and `steps` are not known
+    std::optional<io::ChangeCounts> changes;                     ///< nothing without --baseline
+    std::optional<EventCounts> events;  ///< nothing without --events; with it, `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;
     DetectSeconds seconds;
     EngineDescription engine;
 
-    /// What a frame's call did, beside `written` seconds that went by in writing.
+    /// Adds the counts and seconds of the call for a frame. `written`: seconds of the call that were spent in writing.
     void add(const Summary& summary, double written);
     void add(const PipelineSummary& summary, double written);
     /// Adds a property that a check did not cover. Empty: none.

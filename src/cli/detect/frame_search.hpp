@@ -14,12 +14,12 @@
 
 namespace octopair::cli {
 
-/// One run of `octopair detect`: what was asked, what was read, what has come out so far.
+/// One run of `octopair detect`: its request, its inputs, and its report so far.
 struct DetectRun {
     const DetectRequest& request;
     std::stop_token stop;
     ProgressLine progress;
-    WholeInputs inputs = {};  ///< or a slice of each set
+    WholeInputs inputs = {};  ///< on ranks without filters: only a slice of each set
     DetectReport report = {};
 
     bool join() const { return !request.against.empty(); }
@@ -48,13 +48,14 @@ class SearchGroup {
 public:
     virtual ~SearchGroup() = default;
     virtual Group& processes() = 0;
-    /// Reads the objects that this process needs. Within together().
+    /// Reads the objects that this process needs. Requires: called within Group::together().
     virtual void read_inputs(DetectRun& run) = 0;
-    /// Throws: Error{resource_limit} for more objects than the requested output, filters or verification can number. Within together().
+    /// Throws: Error{resource_limit} for more objects than the requested output, filters or verification can number.
+    /// Requires: called within Group::together().
     virtual void check_objects(DetectRun& run) = 0;
-    /// Collective. Throws: Error{usage} if the processes have read other objects, which would be the pairs of no scene.
+    /// Collective. Throws: Error{usage} if the processes have read other objects, so that their pairs would belong to no scene.
     virtual void compare_inputs(DetectRun& run) = 0;
-    /// Collective, as all functions of its result. Borrows the run, after it has read its inputs.
+    /// Makes the search of this process. Collective, as are all functions of the search. Borrows the run. Requires: the inputs were read.
     /// Throws: what the makers of engines throw.
     virtual std::unique_ptr<FrameSearch> make_search(DetectRun& run) = 0;
 };

@@ -9,8 +9,8 @@
 
 namespace octopair::cli {
 
-/// Returns facts about the options. Paths of inputs may differ, because hosts may have their files in different folders. So may --threads and
-/// --quiet.
+/// Returns facts about the options, without --threads and --quiet, which may differ. Paths of inputs may differ, too, because hosts may have
+/// their files in different folders.
 Facts option_facts(const DetectRequest& request);
 
 /// Borrows `cluster`.

@@ -61,7 +61,7 @@ struct WholeInputs {
 /// against the scene or the tolerance. Requires: the sets are whole and have boxes.
 std::vector<std::string> input_warnings(const DetectRequest& request, const SetPair& sets);
 
-/// For --fail-on-collision: a check of nothing must not pass. Throws: Error{bad_input} that names a file without objects.
+/// Refuses files without objects: with --fail-on-collision, a check of nothing must not pass. Throws: Error{bad_input} that names the file.
 void refuse_empty_parts(std::span<const Part> parts);
 
 }  // namespace octopair::cli

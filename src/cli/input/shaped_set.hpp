@@ -11,7 +11,7 @@ namespace octopair::cli {
 
 struct HowToPrepare {
     unsigned threads = 0;
-    /// Length in the world: gaps of meshes are closed up to it (octopair::weld); 0 leaves meshes as they are.
+    /// Largest gap of meshes that is closed (octopair::weld), as a length in the world; 0 leaves meshes as they are.
     double weld = 0;
 };
 

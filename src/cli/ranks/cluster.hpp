@@ -18,8 +18,8 @@
 
 namespace octopair::cli {
 
-/// A fact that all ranks of a command must have in common, such as an option or an input file. Ranks that differ would find the pairs of
-/// no scene, or wait for each other for ever.
+/// A fact that all ranks of a command must have in common, such as an option or an input file. Ranks that differ would find pairs
+/// that belong to no scene, or deadlock.
 struct Fact {
     std::string what;        ///< for messages, such as "--margin"; unique on a rank
     std::string value;       ///< to be the same on all ranks
@@ -34,7 +34,7 @@ public:
     /// Ends all ranks at once; mpirun ends with this status.
     [[noreturn]] static void abort(int status);
 
-    /// True if the last error was thrown on all ranks.
+    /// Returns whether the last error was thrown on all ranks.
     bool ends_alike() const { return run_.ends_alike; }
 
     /// Collective. Prints an error that all ranks have, on the first rank. Returns the exit status.

@@ -33,8 +33,8 @@ void log_start(spdlog::logger& log, const service::Server& server, const service
 /// Returns the exit status of this rank. Ends the program if a rank no longer responds.
 int serve_on_ranks(const ServeRequest& request);
 #endif
-/// Raises the limit on open files of this process as far as the system allows. Lowers ServerLimits::connections to what fits, and
-/// logs it.
+/// Raises the limit on open files of this process as far as the system allows. Lowers ServerLimits::connections to the number
+/// of connections that this limit permits, and logs the change.
 void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log);
 
 /// Lowers ServerLimits::memory_bytes to what fits into the memory of the machine and of the control group, and logs it. No limit stays

@@ -1,6 +1,6 @@
 // Supervisor: the program that started the server and watches it, for example systemd (sd_notify(3), sd_listen_fds(3)).
 //
-// A build without libsystemd, and a server that nobody supervises, have no supervisor: then nothing is sent.
+// A build without libsystemd sends no reports. A server that no program supervises has no supervisor, and sends no reports either.
 #pragma once
 
 #include <thread>

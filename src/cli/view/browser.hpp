@@ -1,4 +1,4 @@
-// The user's browser: is told where the page is, and draws pictures of pages.
+// The user's browser: opens the page, or draws a picture of it.
 #pragma once
 
 #include <stop_token>

@@ -1,4 +1,5 @@
-// Calls of a server that is watched: its pages are told when it stops answering, and when it answers again.
+// ServerContact: calls of the server that `octopair view` shows. Pages get a message when the server stops answering, and when it answers
+// again.
 #pragma once
 
 #include <atomic>
@@ -47,13 +48,13 @@ auto within_time(const std::stop_token& stop, const Call& call) {
     }
 }
 
-/// Tells the pages of a path (page_server.hpp) whether a server answers.
+/// Sends messages about the state of the connection to the pages of a path (page_server.hpp).
 class ServerContact {
 public:
     explicit ServerContact(std::string path) : path_(std::move(path)) {}
 
-    /// Returns what `call` returns. `call` gets a stop token. If the server does not answer, tells the pages, pauses, and returns
-    /// nothing.
+    /// Returns what `call` returns. `call` gets a stop token. If the server does not answer, sends a message to the pages, pauses, and
+    /// returns nothing.
     /// Throws: what `call` throws for other reasons.
     template <typename Call>
     std::invoke_result_t<Call, std::stop_token> ask(viewer::PageServer& server, const std::stop_token& stop,

@@ -59,7 +59,7 @@ viewer::LiveState state_of(SceneSnapshot&& snapshot) {
     return state;
 }
 
-/// Returns the client options of the command, with a short patience: the pages are told soon, and the calls repeated.
+/// Returns the client options of the command with at most 2 s of patience, so that pages soon get a message. The calls are repeated.
 ClientOptions watching_options(const ServerChoice& choice) {
     ClientOptions options = client_options(choice);
     options.patience = std::min<std::chrono::milliseconds>(options.patience, 2s);

@@ -60,7 +60,7 @@ LoadedView load_result(const ViewRequest& request, const std::stop_token& stop);
 
 /// Returns whether a file is the recording of a scene.
 bool is_recording(const std::string& path);
-/// Replays a recording. Keeps the steps in memory, and stops at a limit, which a notice tells.
+/// Replays a recording. Keeps the steps in memory up to a limit. Beyond the limit, steps are left out, and a notice says so.
 /// Throws: what replay() throws.
 LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop);
 

@@ -68,9 +68,9 @@ std::vector<uid_t> trusted_users(const std::string& server_user) {
     return users;
 }
 
-/// Checks a socket and all folders above it. Trusted are this user, root, and `server_user` (a name or number; empty: nobody else). The
-/// socket and the folders must belong to trusted users. Other users must not be able to write to the socket's folder, nor to
-/// folders above it, unless these are sticky, like /tmp. The socket need not exist.
+/// Checks a socket and all folders above it. Trusted users are this user, root, and, unless it is empty, `server_user` (a name or
+/// number). The socket and the folders must belong to trusted users. Other users must not be able to write to the folder of the socket,
+/// nor to folders above it, unless these are sticky, like /tmp. The socket need not exist.
 /// Throws: Error{usage} that names the folder or socket, or an unknown user.
 void check_socket_trust(const std::string& path, const std::string& server_user) {
     const std::vector<uid_t> users = trusted_users(server_user);

@@ -58,7 +58,7 @@ public:
     std::span<const std::uint32_t> objects() const { return objects_; }
     /// Returns the row of an object, or `none`.
     std::uint32_t row_of(std::uint32_t object) const { return object < rows_.size() ? rows_[object] : none; }
-    /// True if all objects are shown, in the order of their indices.
+    /// Returns whether all objects are shown, in the order of their indices.
     bool in_order() const;
 
 private:

@@ -30,7 +30,7 @@ public:
     virtual Message live_frame(const std::string& path, std::int64_t last) = 0;
     /// Called when a page has connected to the WebSocket at `path` (`here`), and when this connection has ended.
     virtual void connected(const std::string& /*path*/, bool /*here*/) {}
-    /// True while the data cannot be read yet.
+    /// Returns whether the data cannot be read yet.
     virtual bool loading() const { return false; }
 };
 

@@ -28,7 +28,7 @@ public:
         if (ends_.size() > max_known) std::erase_if(ends_, [this](const auto& end) { return end.second <= now_; });
     }
 
-    /// Notes that a job of a client took more work than begin() was told. `more` >= 0.
+    /// Notes that a job of a client took more work than begin() assumed. `more` >= 0.
     void add(const std::string& client, double more) {
         const auto known = ends_.find(client);
         if (known != ends_.end()) known->second += more;

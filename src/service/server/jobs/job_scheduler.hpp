@@ -5,8 +5,8 @@
 //   jobs share one engine with all threads.
 //   In each of the two queues, clients take turns (fair_order.hpp). The jobs of one client run in the order in which they were added. A
 //   detached job that waits for memory lets attached jobs pass, but no detached one whose turn is later.
-//   If there are several engines of small jobs, one client has at most all but one, where clients are told apart: few objects can have so
-//   many pairs that a job takes long.
+//   If the server distinguishes clients, and has several engines of small jobs, one client uses at most all but one of them: a job with a
+//   small number of objects can have so many pairs that it takes long.
 //   An engine that was idle for `idle_before_renewal` is made anew, if renewable: it keeps the memory of its largest job otherwise.
 //   An attached job of at most `max_instant_objects` objects runs on the calling thread if an instant engine is free.
 //   Waking a thread would take as long as the job.

@@ -23,7 +23,7 @@ public:
     std::shared_ptr<ServerJob> find(const std::string& owner, const std::string& id) const;
     /// Returns null if `owner` has no job `id`.
     std::shared_ptr<ServerJob> look_up(const std::string& owner, const std::string& id) const;
-    /// Returns the only job with this id, whoever owns it. Throws: Error{bad_input} if there is none, or if several owners have one.
+    /// Returns the job with this id, of any owner. Throws: Error{bad_input} if no owner or several owners have such a job.
     std::shared_ptr<ServerJob> find_only(const std::string& id) const;
     /// Returns the jobs of `owner` with ids greater than `after`, ascending by id, at most `most` of them.
     std::vector<std::shared_ptr<ServerJob>> of(const std::string& owner, const std::string& after,

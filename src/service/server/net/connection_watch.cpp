@@ -188,7 +188,7 @@ void ConnectionWatch::add(Recent& recent, double per_second, Clock::time_point n
 void ConnectionWatch::cut_known(std::uint64_t number, Clock::time_point now) {
     const auto found = known_.find(number);
     if (found == known_.end()) return;
-    // gRPC may close the connection meanwhile, and its number may be used again. A copy stays what it is.
+    // gRPC may close the connection meanwhile, and its number may be used again. A copy still refers to this connection.
     const Descriptor copy(::fcntl(found->second.descriptor, F_DUPFD_CLOEXEC, 0));
     if (copy.open() && socket_of(copy.number()) == found->second.socket) {
         reset(copy.number());

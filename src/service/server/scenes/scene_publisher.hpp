@@ -81,7 +81,7 @@ public:
     /// Reciprocal of the share of the time that copies take.
     static constexpr int intervals_per_copy = 100;
 
-    /// What a publisher knows of its scene.
+    /// The scene of a publisher.
     struct Description {
         std::string owner;
         Precision precision = Precision::float32;
