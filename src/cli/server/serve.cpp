@@ -9,9 +9,7 @@
 #include <stop_token>
 
 #include "cli/command/interrupt.hpp"
-#include "cli/server/serve_options.hpp"
 #include "cli/server/serving.hpp"
-#include "cli/server/supervisor.hpp"
 #include "cli/subcommands.hpp"
 
 namespace octopair::cli {

@@ -1,12 +1,11 @@
-#include "cli/server/serve_options.hpp"
-
+// Options of `octopair serve`, from the command line and from a configuration file.
 #include <chrono>
 #include <cstdint>
 #include <memory>
 
 #include "cli/command/command.hpp"
 #include "cli/command/option_values.hpp"
-#include "cli/server/supervisor.hpp"
+#include "cli/server/serving.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

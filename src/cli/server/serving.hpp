@@ -1,20 +1,48 @@
-// Steps of `octopair serve` that are the same for all engines: options, log, start and stop.
+// The parts of `octopair serve`: its options, the steps that are the same for all engines, and the supervisor.
 #pragma once
 
 #include <spdlog/fwd.h>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
-#include "cli/server/serve_options.hpp"
+#include "base/descriptor.hpp"
+#include "cli/engine_choice.hpp"
 #include "service/server/log/log_line.hpp"
 #include "service/server/server.hpp"
+#include "service/server/server_options.hpp"
 
 namespace octopair::cli {
+
+// serve_options.cpp
+
+/// Options from the command line and from a configuration file.
+struct ServeRequest {
+    std::string config;  ///< path of a configuration file, or empty
+    std::string listen, metrics;
+    EngineChoice engine;
+    std::optional<std::chrono::seconds> rank_silence;  ///< value of --rank-timeout, if given
+    service::ServerOptions options;
+    service::LogForm log_form = service::LogForm::text;
+    std::string log_level = "info";
+    bool quiet = false;
+};
+
+void add_serve_options(Command& command, ServeRequest& request);
+
+/// Adds the options of the configuration file, and checks that the options fit together.
+/// Requires: the command line was parsed.
+/// Throws: Error{usage}; Error{io_failed} if the configuration file cannot be read.
+void complete_serve_request(const Command& command, ServeRequest& request);
+
+// serving.cpp
 
 /// Returns how many jobs may run on threads of gRPC: all but one of these threads, so that one reads what other clients send. gRPC 1.51 has
 /// half as many as cores, at least 2 and at most 16.
@@ -37,8 +65,8 @@ int serve_on_ranks(const ServeRequest& request);
 /// of connections that this limit permits, and logs the change.
 void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log);
 
-/// Lowers ServerLimits::memory_bytes to what fits into the memory of the machine and of the control group, and logs it. No limit stays
-/// none.
+/// Lowers ServerLimits::memory_bytes to what fits into the memory of the machine and of the control group, and logs the change. A
+/// limit of 0 (none) stays 0.
 void fit_memory(service::ServerLimits& limits, spdlog::logger& log);
 
 /// Blocks SIGHUP in this thread and those that it starts, for a Reloader. Call it before the first thread starts.
@@ -61,5 +89,28 @@ private:
 void wait_for_stop(const std::stop_token& stop, const std::function<void()>& sometimes = {});
 /// Drains the server (Server::drain), and logs the beginning and the end.
 void drain(spdlog::logger& log, service::Server& server);
+
+// supervisor.cpp
+
+/// Returns the listening socket that the supervisor passed to this process. Throws: Error{usage} if it did not pass exactly one.
+Descriptor passed_socket();
+
+/// The program that started the server and watches it, for example systemd (sd_notify(3), sd_listen_fds(3)). A build without libsystemd
+/// sends no reports. A server that no program supervises has no supervisor, and sends no reports either.
+class Supervisor {
+public:
+    /// Reports that the server is ready. If the supervisor asks for it, reports twice per interval that the server works, until this object
+    /// is destroyed. Borrows the server.
+    explicit Supervisor(const service::Server& server);
+    Supervisor(const Supervisor&) = delete;
+    Supervisor& operator=(const Supervisor&) = delete;
+    ~Supervisor();
+
+    /// Reports that the server takes no more jobs and ends.
+    static void report_stopping();
+
+private:
+    std::jthread thread_;
+};
 
 }  // namespace octopair::cli

@@ -1,5 +1,4 @@
-#include "cli/server/supervisor.hpp"
-
+// Supervisor: the program that started the server and watches it.
 #include <fcntl.h>
 
 #include <chrono>
@@ -8,9 +7,9 @@
 #include <mutex>
 #include <stop_token>
 
+#include "cli/server/serving.hpp"
 #include "octopair/error.hpp"
 #include "service/server/server.hpp"
-
 #ifdef OCTOPAIR_WITH_SYSTEMD
 #include <systemd/sd-daemon.h>
 #endif

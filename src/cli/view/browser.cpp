@@ -1,5 +1,4 @@
-#include "cli/view/browser.hpp"
-
+// The user's browser: opens the page, or draws a picture of it.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -24,6 +23,7 @@
 #include "base/child_process.hpp"
 #include "base/descriptor.hpp"
 #include "base/stop.hpp"
+#include "cli/view/view.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {

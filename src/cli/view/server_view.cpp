@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "cli/server/server_choice.hpp"
-#include "cli/view/browser.hpp"
 #include "cli/view/server_contact.hpp"
 #include "octopair/error.hpp"
 #include "octopair/job_client.hpp"

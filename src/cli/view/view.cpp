@@ -14,7 +14,6 @@
 #include "cli/command/option_values.hpp"
 #include "cli/command/program_main.hpp"
 #include "cli/subcommands.hpp"
-#include "cli/view/browser.hpp"
 #include "cli/view/view.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats/format_choice.hpp"
