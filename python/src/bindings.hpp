@@ -8,6 +8,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "octopair/octants.hpp"
+
 namespace octopair::python {
 
 namespace py = pybind11;
@@ -18,5 +20,8 @@ void bind_octants(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_shapes(py::module_& module);
 void bind_pipeline(py::module_& module);
+
+/// Returns (codes, bounds, leaf, entries, homes, objects, offsets, home_octants, space), which are the attributes of octopair.Octants.
+py::tuple octants_tuple(const Octants& octants);
 
 }  // namespace octopair::python

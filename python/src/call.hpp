@@ -132,4 +132,9 @@ private:
 /// Prepares a module for the end of the interpreter. To be called once, by each module.
 void watch_end_of_interpreter();
 
+// errors.cpp
+
+/// Makes the module raise the exceptions of octopair/_errors.py for Error and for a lack of memory. Each module needs this once.
+void register_errors();
+
 }  // namespace octopair::python

@@ -1,7 +1,6 @@
 // octopair._core: everything but servers and MPI, which are modules of their own. The package octopair wraps it.
 #include "bindings.hpp"
 #include "call.hpp"
-#include "errors.hpp"
 #include "octopair/octal_code.hpp"
 #include "octopair/version.hpp"
 

@@ -1,4 +1,5 @@
-#include "errors.hpp"
+// Errors of the library as exceptions of Python.
+#include "call.hpp"
 
 #include <exception>
 #include <new>

@@ -5,7 +5,6 @@
 #include "bindings.hpp"
 #include "call.hpp"
 #include "engines.hpp"
-#include "errors.hpp"
 #include "octopair/mpi.hpp"
 
 namespace octopair::python {

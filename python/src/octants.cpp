@@ -1,6 +1,4 @@
 // Lists of octants as arrays, and list_octants().
-#include "octants.hpp"
-
 #include <algorithm>
 #include <cstdint>
 

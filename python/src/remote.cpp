@@ -7,7 +7,6 @@
 #include "bindings.hpp"
 #include "call.hpp"
 #include "engines.hpp"
-#include "errors.hpp"
 #include "octopair/client.hpp"
 #include "octopair/job_client.hpp"
 #include "octopair/remote_scene.hpp"

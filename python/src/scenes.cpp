@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "bindings.hpp"
-#include "octants.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::python {

@@ -7,7 +7,6 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "call.hpp"
-#include "errors.hpp"
 #include "octopair/error.hpp"
 #include "scenes.hpp"
 
