@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/control_group.hpp"
 #include "cli/command/command.hpp"
@@ -52,9 +53,7 @@ void parse_engine(const std::string& word, EngineChoice& choice) {
                             "' is the address of a server; this octopair was built without servers, it has: " +
                             fmt::format("{}", fmt::join(engine_names(), ", ")));
         }
-        choice.kind = EngineKind::server;
-        choice.server.address = word;
-        return;
+        return choice.choose_server(word);
     }
     if ((word == "processes" && !with_processes) || (word == "mpi" && !with_mpi)) {
         throw Error(ErrorCode::usage, fmt::format("--engine: this octopair was built without '{}'; it has: {}", word,
@@ -142,6 +141,11 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice) {
     }
 #endif
     return make_local_engine(choice.threads.value_or(0));
+}
+
+void EngineChoice::choose_server(std::string address) {
+    kind = EngineKind::server;
+    server.address = std::move(address);
 }
 
 EngineChoice EngineChoice::with_width(unsigned width) const {

@@ -32,6 +32,8 @@ struct EngineChoice {
     bool keeps_scenes() const { return kind == EngineKind::local || kind == EngineKind::server; }
     /// Returns whether a call may run on the calling thread, without waking another thread or process.
     bool runs_in_caller() const { return kind == EngineKind::local; }
+    /// Chooses the server at an address.
+    void choose_server(std::string address);
     /// Returns a copy of this choice with `width` workers if the engine has workers, else with `width` threads.
     EngineChoice with_width(unsigned width) const;
 };

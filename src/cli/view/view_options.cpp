@@ -80,8 +80,7 @@ void check_server_view(ViewRequest& request) {
         refuse_view("--export and --screenshot: not with a server");
     if (detect.pipeline.space.up != io::UpAxis::unknown) refuse_view("--up: not with a server");
 #ifdef OCTOPAIR_WITH_SERVICE
-    detect.engine.kind = EngineKind::server;
-    detect.engine.server.address = detect.inputs.front();
+    detect.engine.choose_server(detect.inputs.front());
     detect.inputs.clear();
 #else
     refuse_view(detect.inputs.front() + " is the address of a server; this octopair was built without servers");
