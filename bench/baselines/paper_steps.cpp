@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "baselines/overlap.hpp"
-#include "octree/sweep/sort_key.hpp"
+#include "octree/sweep/start_order.hpp"
 
 namespace octopair::baselines {
 

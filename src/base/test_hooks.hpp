@@ -19,10 +19,10 @@ namespace octopair {
 /// All paths, grouped by the file that chooses them. A test of tiny scenes takes each path.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
-    /* octree/build/split_rule.cpp, octree/directory.cpp */ \
+    /* octree/encode/split_rule.cpp, octree/directory.cpp */ \
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
-    /* octree/linear_octree.cpp, octree/build/build_steps.cpp */ \
+    /* octree/linear_octree.cpp, octree/encode/build_steps.cpp */ \
     path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) \
     path(ghost_entries) path(ghosts_by_rule) path(refilled) path(class_bits_brought) \
     /* octree/scan.cpp */ \
@@ -35,7 +35,7 @@ namespace octopair {
     /* octree/sweep/recursive_sweep.cpp */ \
     path(one_tile) path(tiles) path(tile_skipped) path(recursion_settled) path(recursion_swept) \
     path(recursion_spanning) path(recursion_halved) path(recursion_shared) \
-    /* octree/sweep/sweep_order.cpp, octree/sweep/sort_key.cpp */ \
+    /* octree/sweep/start_order.cpp, octree/sweep/sweep_choice.cpp */ \
     path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks) path(hits_few) \
     /* octree/cell_sweep/cell_pair_maker.cpp */ \
     path(cell_sweep_resumed) path(cell_hit_doubtful) path(cell_hit_refused) \

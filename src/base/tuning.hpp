@@ -35,7 +35,7 @@ struct Tuning {
         std::size_t space_objects = 1024;  ///< maximum number of sampled objects that fit the space, for its quantiles
     } sampling;
 
-    /// When an octant is split (octree/build/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
+    /// When an octant is split (octree/encode/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
     struct Split {
         double always_above = 4096;              ///< an octant with more is split: a sweep of more misses the cache
         double never_up_to = 1024;               ///< an octant with at most this many stays whole; <= `always_above`
@@ -45,7 +45,7 @@ struct Tuning {
         std::uint64_t max_cells_per_octant = 4;  ///< maximum size of the table from cells to leaves
     } split;
 
-    /// How the steps of a build are divided into shares (octree/linear_octree.cpp, octree/build/build_steps.cpp).
+    /// How the steps of a build are divided into shares (octree/linear_octree.cpp, octree/encode/build_steps.cpp).
     struct Build {
         std::size_t blocks_per_thread = 2;       ///< blocks of objects; each counts the entries of every octant
         std::size_t min_block = 2048;            ///< minimum number of objects per block
@@ -55,7 +55,7 @@ struct Tuning {
         std::size_t chunk_part = 4;  ///< with larger chunks, one entry in this many could be unused; at least 1
     } build;
 
-    /// Builds whose lists and tables exceed the caches and the TLB (octree/build/staged_writer.cpp, octree/build/batch_encoder.cpp).
+    /// Builds whose lists and tables exceed the caches and the TLB (octree/encode/staged_writer.cpp, octree/encode/batch_encoder.cpp).
     struct Large {
         std::size_t min_lists = 1 << 15;       ///< entries of at least this many lists are scattered in two passes
         std::size_t max_groups = 512;          ///< maximum number of groups of lists that the first pass scatters to
@@ -77,7 +77,7 @@ struct Tuning {
         unsigned max_nesting = 8;                 ///< maximum depth of nesting: octrees within octants of octrees
     } scan;
 
-    /// How sets of boxes are sorted and swept (octree/sweep/recursive_sweep.cpp, octree/sweep/sweep_order.cpp, sweep kernels).
+    /// How sets of boxes are sorted and swept (octree/sweep/recursive_sweep.cpp, octree/sweep/start_order.cpp, sweep kernels).
     struct Sweep {
         std::size_t tile = 4096;                ///< boxes per tile: their arrays stay in the L2 cache
         std::size_t small_set = 512;            ///< a set of at most this many boxes is swept whatever its windows

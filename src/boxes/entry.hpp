@@ -1,17 +1,13 @@
-// Entry: what an octant stores of an object's box, and the rule that reports each pair once.
-// Start here to change which octant reports a pair.
+// Entry: what an octant stores of an object's box.
 //
 // Invariants
 //   `min` and `max` are the caller's box in float32, moved to a near origin, widened by margin and padding, and rounded outward
 //   (box_source.hpp). So the entries of a pair always overlap.
 //   An octant reports two of its entries only if (a.mask & b.mask) == 0. The bits of `mask`:
-//     bits 0..2  class bits, one for each axis: the box begins before this octant, or before an octant around it, up to the
-//                outermost octree. Octants below keep a bit that is set. So an octant reports a pair exactly if it holds the
-//                low corner of the boxes' intersection, for any nesting of octrees (proof: docs/proofs.md).
+//     bits 0..2  class bits, one for each axis: the box begins before this octant, or before an octant around it. They decide
+//                which octant reports a pair (octree/reporting_octant.hpp).
 //     bit 3, 4   the object belongs to the first, the second set of a join. Pairs within a set do not count.
 //     bit 5      the object is fixed in a scene. Pairs of two fixed objects do not count.
-//
-// Source: the classes are those of Tsitsigkos et al., arXiv 2307.09256.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +26,6 @@ struct alignas(32) Entry {
 };
 static_assert(sizeof(Entry) == 32);
 
-inline constexpr std::uint32_t begins_before = 7;  ///< the three class bits
 inline constexpr std::uint32_t first_set = 8;
 inline constexpr std::uint32_t second_set = 16;
 inline constexpr std::uint32_t fixed_object = 32;

@@ -15,7 +15,7 @@
 
 #include "base/private_export.hpp"
 #include "base/test_hooks.hpp"
-#include "octree/build/split_rule.hpp"
+#include "octree/encode/split_rule.hpp"
 #include "octree/space.hpp"
 
 namespace octopair {
@@ -42,12 +42,6 @@ struct Octant {
             touched &= box.lo[axis] <= last && box.hi[axis] >= lo[axis] + (planted(Fault::octant_border_open) ? 1 : 0);
         }
         return touched;
-    }
-    /// Returns the axes, as class bits (boxes/entry.hpp), on which `box` begins before this octant.
-    std::uint32_t begins_before(const CellBox& box) const {
-        std::uint32_t axes = 0;
-        for (unsigned axis = 0; axis < 3; ++axis) axes |= std::uint32_t(box.lo[axis] < lo[axis]) << axis;
-        return axes;
     }
 };
 
@@ -104,7 +98,7 @@ public:
     /// Returns the octant of `level` that holds the leaf, or the leaf itself if its level is not deeper.
     OctantIndex at_most(const Leaf& leaf, unsigned level) const {
         OctantIndex octant = leaf.octant();
-        for (unsigned at = leaf.level(); at > level; --at) octant = octants_[octant].parent;
+        for (unsigned above = leaf.level(); above > level; --above) octant = octants_[octant].parent;
         return octant;
     }
 

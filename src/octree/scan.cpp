@@ -10,6 +10,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/reporting_octant.hpp"
 #include "octree/scan_memory.hpp"
 #include "octree/sweep/recursive_sweep.hpp"
 
@@ -104,9 +105,9 @@ private:
         const Octant& octant = octree_.octants()[to];
         if (octant.touches(box) == planted(Fault::handed_to_wrong_child)) return;
         count_path(Path::handed_down);
-        // Class bits are added, never cleared (boxes/entry.hpp).
+        // Class bits are added, never cleared (octree/reporting_octant.hpp).
         Entry& handed = lists_[octant.level].emplace_back(entry);
-        handed.mask |= octant.begins_before(box);
+        handed.mask |= class_bits(box, octant);
     }
 
     void move(CellBox& box) const {

@@ -13,7 +13,7 @@
 
 namespace octopair {
 
-/// Memory of one share at a time, apart from crowds. The contents are undefined when it is lent.
+/// Memory that one share at a time uses to sweep octants. Crowds have memory of their own. The contents are undefined when it is lent.
 struct ScanMemory {
     using Runs = std::vector<std::span<const CellEntry>>;
     Runs runs, next_runs;                                 // entries of the scanned octant, and of the next octant

@@ -43,7 +43,7 @@ inline unsigned natural_level(const CellBox& box) {
     return deepest - unsigned(std::bit_width(extent));
 }
 
-/// Map from coordinates to cells: the specification of the SIMD versions (space_kernel.cpp, build/batch_encoder_kernel.cpp).
+/// Map from coordinates to cells: the specification of the SIMD versions (space_kernel.cpp, encode/batch_encoder_kernel.cpp).
 struct SpaceMap {
     static constexpr unsigned fine_bits = 2;  ///< a cell has 2^fine_bits fine cells on each axis
     static constexpr unsigned bits = deepest + fine_bits;

@@ -4,6 +4,7 @@
 // - The octree is the same for any distribution of the work.
 
 #include "octree/linear_octree.hpp"
+#include "octree/reporting_octant.hpp"
 
 #include <gtest/gtest.h>
 
@@ -119,7 +120,7 @@ TEST_P(Scene, EntriesHaveCellsOfTheirOctantAndClassBits) {
         const OctantCells cells(octree_.space(), place);
         for (const CellEntry& entry : octree_.entries(octant)) {
             Entry expected = whole(entry.object);
-            expected.mask = place.begins_before(octree_.space().cells(expected));
+            expected.mask = class_bits(octree_.space().cells(expected), place);
             ASSERT_EQ(entry.ends, cells.entry(expected).ends) << "object " << entry.object;
         }
     }

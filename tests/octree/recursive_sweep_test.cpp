@@ -12,7 +12,7 @@
 #include "octopair/error.hpp"
 #include "octree/given_rule.hpp"
 #include "octree/scan_memory.hpp"
-#include "octree/sweep/sweep_order.hpp"
+#include "octree/sweep/start_order.hpp"
 
 namespace octopair::test {
 namespace {

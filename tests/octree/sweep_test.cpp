@@ -10,7 +10,7 @@
 #include <set>
 
 #include "octree/given_rule.hpp"
-#include "octree/sweep/sweep_order.hpp"
+#include "octree/sweep/start_order.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {
@@ -169,7 +169,7 @@ TEST(Sweep, HitsMustBeDeeperTheLargerTheNumbers) {
     EXPECT_EQ(certain_depths({other, set, SweepKind::cross}, {{0, 1, 0.5f}}), depths);
 }
 
-TEST(SweepOrder, SortsByLowEndThenPosition) {
+TEST(StartOrder, SortsByLowEndThenPosition) {
     std::mt19937 random(6);
     for (const std::size_t count : {0, 1, 2, 24, 25, 500, 4096}) {
         for (const float far : {1.0f, 3e38f}) {  // one far box crowds all others into one bucket
@@ -179,7 +179,7 @@ TEST(SweepOrder, SortsByLowEndThenPosition) {
                 entry.max[2] = entry.min[2] + 1;
             }
             if (count > 0) entries[count / 2].max[2] = entries[count / 2].min[2] = far;
-            SweepOrder order({});
+            StartOrder order({});
             NoPairs none;
             SerialExecutor serial(none);
             const GivenRule rule(entries, 0);

@@ -14,7 +14,7 @@
 #include "base/memory.hpp"
 #include "boxes/pair_rule.hpp"
 #include "octree/sample.hpp"
-#include "octree/sweep/sort_key.hpp"
+#include "octree/sweep/start_order.hpp"
 
 namespace octopair {
 

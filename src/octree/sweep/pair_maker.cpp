@@ -2,21 +2,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <string>
 #include <utility>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octopair/error.hpp"
+#include "octree/sweep/start_order.hpp"
 
 namespace octopair {
 
 namespace {
-
-bool comes_before(const Entry& a, const Entry& b, unsigned axis) {
-    return a.min[axis] != b.min[axis] ? a.min[axis] < b.min[axis] : a.object < b.object;
-}
 
 bool oriented(const Entry& row, const Entry& column, const Orientation& orientation) {
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -73,17 +68,6 @@ void PairMaker::drop_rounded(const Sweep& sweep, const Depths& depths, std::span
             count_path(Path::hit_settled);
             return context_.rule.is_pair(sweep.rows.object()[row], sweep.columns.object()[column]);
         });
-    }
-}
-
-void OutermostOctant::check(const Entry& a, const Entry& b) const {
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        const std::uint32_t low = space.map().cell(std::max(a.min[axis], b.min[axis]), axis);
-        if (low >= octant.lo[axis] && low - octant.lo[axis] < cells_per_axis >> octant.level) continue;
-        throw Error(ErrorCode::engine_failed, "objects " + std::to_string(a.object) + " and " +
-                                                  std::to_string(b.object) +
-                                                  " are reported in an octant without the "
-                                                  "low corner of their intersection");
     }
 }
 

@@ -13,13 +13,13 @@
 
 #include "base/tuning.hpp"
 #include "boxes/pair_rule.hpp"
-#include "octree/directory.hpp"
 #include "octree/executor.hpp"
+#include "octree/reporting_octant.hpp"
 #include "octree/sweep/sweep.hpp"
 
 namespace octopair {
 
-/// By axis: +1 keeps hits whose row comes before the column in the order (min, object), -1 keeps hits whose column comes first,
+/// By axis: +1 keeps hits whose row comes before the column (comes_before()), -1 keeps hits whose column comes first,
 /// 0 keeps all hits.
 using Orientation = std::array<std::int8_t, 3>;
 
@@ -27,16 +27,6 @@ inline Orientation reversed(Orientation orientation) {
     for (auto& sign : orientation) sign = std::int8_t(-sign);
     return orientation;
 }
-
-/// An octant of the outermost octree. With test hooks, each pair reported within the octant is checked: the octant must hold
-/// the low corner of the intersection.
-struct OutermostOctant {
-    Space space;
-    Octant octant;
-
-    /// Throws: Error{engine_failed} if another octant must report this pair.
-    void check(const Entry& a, const Entry& b) const;
-};
 
 class ScanMemoryPool;
 

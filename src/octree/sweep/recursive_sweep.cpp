@@ -10,7 +10,7 @@
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
 #include "boxes/box_source.hpp"
-#include "octree/sweep/sweep_order.hpp"
+#include "octree/sweep/start_order.hpp"
 
 namespace octopair {
 
@@ -289,13 +289,13 @@ std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list, c
 }
 
 void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor) {
-    SweepOrder row_order(context.stop);
+    StartOrder row_order(context.stop);
     const SortedTiles rows{join.rows, row_order.sort(join.rows, axis, executor)};
     count_path(rows.size() > 1 ? Path::tiles : Path::one_tile);
     if (join.self) {
         return TileSweep{context, rows, rows, axis, SweepKind::self, join.orientation}.run(executor);
     }
-    SweepOrder column_order(context.stop);
+    StartOrder column_order(context.stop);
     const SortedTiles columns{join.columns, column_order.sort(join.columns, axis, executor)};
     TileSweep{context, rows, columns, axis, SweepKind::cross, join.orientation}.run(executor);
     TileSweep{context, columns, rows, axis, SweepKind::cross_strict, reversed(join.orientation)}.run(executor);

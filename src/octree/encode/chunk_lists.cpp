@@ -1,10 +1,9 @@
-#include "octree/build/chunk_lists.hpp"
+#include "octree/encode/chunk_lists.hpp"
 
 #include <algorithm>
 
 #include "base/tuning.hpp"
 #include "octopair/error.hpp"
-#include "octree/build/chunk_writer.hpp"
 
 namespace octopair {
 

@@ -1,6 +1,6 @@
 // SIMD version of BatchEncoder. Highway compiles it for each instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "octree/build/batch_encoder_kernel.cpp"
+#define HWY_TARGET_INCLUDE "octree/encode/batch_encoder_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -8,8 +8,8 @@
 #include <bit>
 #include <cstring>
 
-#include "octree/build/batch_encoder.hpp"
-#include "octree/build/box_lanes-inl.hpp"
+#include "octree/encode/batch_encoder.hpp"
+#include "octree/encode/box_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace octopair {

@@ -1,11 +1,11 @@
 // SIMD version of BoxLocator. Highway compiles it for each instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "octree/build/box_locator_kernel.cpp"
+#define HWY_TARGET_INCLUDE "octree/encode/box_locator_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "octree/build/box_lanes-inl.hpp"
-#include "octree/build/box_locator.hpp"
+#include "octree/encode/box_lanes-inl.hpp"
+#include "octree/encode/box_locator.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace octopair {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "octree/directory.hpp"
+#include "octree/reporting_octant.hpp"
 
 namespace octopair {
 
@@ -60,7 +61,7 @@ void for_each_octant_of(const CellBox& box, const Directory& directory, Director
         level = finest;
     }
     for (const auto& [corner, octant] : std::span(corners).first(count)) {
-        const unsigned begins = directory.octants()[octant].begins_before(box);
+        const unsigned begins = class_bits(box, directory.octants()[octant]);
         if ((corner & ~begins) == 0) place(octant, begins);
     }
 }

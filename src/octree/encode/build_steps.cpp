@@ -1,4 +1,4 @@
-#include "octree/build/build_steps.hpp"
+#include "octree/encode/build_steps.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octree/build/batch_encoder.hpp"
-#include "octree/build/chunk_writer.hpp"
-#include "octree/build/octants_of.hpp"
-#include "octree/build/staged_writer.hpp"
+#include "octree/encode/batch_encoder.hpp"
+#include "octree/encode/chunk_lists.hpp"
+#include "octree/encode/octants_of.hpp"
+#include "octree/encode/staged_writer.hpp"
 
 namespace octopair {
 
@@ -111,7 +111,7 @@ private:
             if (octant == home_octant) return;
             const OctantCells cells(steps_.space, steps_.directory.octants()[octant]);
             Entry ghost = whole;
-            ghost.mask |= begins;  // added to the bits that it has (boxes/entry.hpp)
+            ghost.mask |= begins;  // added to the bits that it has (octree/reporting_octant.hpp)
             append_ghost(std::uint32_t(steps_.memory.ghost_list(octant)), cells.entry(ghost), home);
         });
     }

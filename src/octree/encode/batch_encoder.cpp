@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "octree/build/batch_encoder.hpp"
+#include "octree/encode/batch_encoder.hpp"
 
 namespace octopair {
 

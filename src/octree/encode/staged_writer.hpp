@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "octree/build/chunk_writer.hpp"
+#include "octree/encode/chunk_lists.hpp"
 
 namespace octopair {
 

@@ -1,4 +1,4 @@
-#include "octree/build/staged_writer.hpp"
+#include "octree/encode/staged_writer.hpp"
 
 #include <algorithm>
 

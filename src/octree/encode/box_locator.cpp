@@ -1,11 +1,11 @@
-#include "octree/build/box_locator.hpp"
+#include "octree/encode/box_locator.hpp"
 
 #include <algorithm>
 #include <cstring>
 
 #include "base/tuning.hpp"
 #include "boxes/box_kernel.hpp"
-#include "octree/build/octants_of.hpp"
+#include "octree/encode/octants_of.hpp"
 
 namespace octopair {
 

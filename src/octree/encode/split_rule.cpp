@@ -1,4 +1,4 @@
-#include "octree/build/split_rule.hpp"
+#include "octree/encode/split_rule.hpp"
 
 #include <algorithm>
 #include <bit>

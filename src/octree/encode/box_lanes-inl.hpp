@@ -12,14 +12,14 @@
 #include <span>
 #include <type_traits>
 
-#include "octree/build/box_locator.hpp"
+#include "octree/encode/box_locator.hpp"
 #include "octree/simd_lanes-inl.hpp"
 
-#if defined(OCTOPAIR_OCTREE_BUILD_BOX_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef OCTOPAIR_OCTREE_BUILD_BOX_LANES_INL_HPP
-#undef OCTOPAIR_OCTREE_BUILD_BOX_LANES_INL_HPP
+#if defined(OCTOPAIR_OCTREE_ENCODE_BOX_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef OCTOPAIR_OCTREE_ENCODE_BOX_LANES_INL_HPP
+#undef OCTOPAIR_OCTREE_ENCODE_BOX_LANES_INL_HPP
 #else
-#define OCTOPAIR_OCTREE_BUILD_BOX_LANES_INL_HPP
+#define OCTOPAIR_OCTREE_ENCODE_BOX_LANES_INL_HPP
 #endif
 
 HWY_BEFORE_NAMESPACE();

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "octree/build/box_locator.hpp"
 #include "octree/cell_sweep/cell_entry.hpp"
 #include "octree/directory.hpp"
+#include "octree/encode/box_locator.hpp"
 #include "octree/space.hpp"
 
 namespace octopair {
