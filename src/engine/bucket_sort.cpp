@@ -71,7 +71,8 @@ private:
     std::size_t used_ = 0;
 };
 
-struct BucketSort::Task {
+/// State of one call of sort().
+struct BucketSort::CallState {
     const std::stop_token& stop;
     Pages& pages;
     std::vector<Pair*>* spent;
@@ -82,57 +83,57 @@ struct BucketSort::Task {
 
 BucketSort::Runs BucketSort::sort(std::vector<PageString>&& strings, const std::stop_token& stop,
                                   std::vector<Pair*>* spent) {
-    Task task{stop, pages_, spent};
-    sort(std::move(strings), plan_.key_bits(), task);
-    return std::move(task.sorted);
+    CallState state{stop, pages_, spent};
+    sort(std::move(strings), plan_.key_bits(), state);
+    return std::move(state.sorted);
 }
 
 /// Requires: the keys of all pairs differ only in their lowest `bits`.
-void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, Task& task) {
+void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, CallState& state) {
     const std::size_t size = size_of(strings);
     if (size == 0) return;
-    throw_if_stopped(task.stop);
+    throw_if_stopped(state.stop);
     if (size > tuning().output.sorted_at_once && bits > 0) {
         count_path(Path::bucket_split);
-        return split(std::move(strings), bits, task);
+        return split(std::move(strings), bits, state);
     }
     const unsigned row_bits = bits - std::min(bits, plan_.keys().column_bits());
-    if (size << tuning().output.sparse_row_bits >> row_bits == 0) return sort_sparse(strings, task);
-    sort_rows_at_once(strings, bits, task);
+    if (size << tuning().output.sparse_row_bits >> row_bits == 0) return sort_sparse(strings, state);
+    sort_rows_at_once(strings, bits, state);
 }
 
-void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, Task& task) {
+void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, CallState& state) {
     const unsigned low_bits = bits - std::min(bits, tuning().output.bucket_split_bits);
     std::vector<PageString> parts(std::size_t(1) << tuning().output.bucket_split_bits);
     for (const PageString& string : strings) {
         for (std::size_t i = 0; i < string.pages().size(); ++i) {
-            throw_if_stopped(task.stop);
+            throw_if_stopped(state.stop);
             for (const Pair& pair : string.page(i)) {
                 parts[plan_.keys().key(pair) >> low_bits & (parts.size() - 1)].add(pair, pages_);
             }
-            task.spend(string.pages()[i]);
+            state.spend(string.pages()[i]);
         }
     }
     strings.clear();
     for (PageString& part : parts) {
         std::vector<PageString> one;
         one.push_back(std::move(part));
-        sort(std::move(one), low_bits, task);
+        sort(std::move(one), low_bits, state);
     }
 }
 
 /// Sorts pairs that are few for their number of rows: most rows are empty.
-void BucketSort::sort_sparse(const std::vector<PageString>& strings, Task& task) {
+void BucketSort::sort_sparse(const std::vector<PageString>& strings, CallState& state) {
     count_path(Path::sparse_bucket_sorted);
     sparse_.clear();
     for (const PageString& string : strings) {
         for (std::size_t i = 0; i < string.pages().size(); ++i) {
             sparse_.insert(sparse_.end(), string.page(i).begin(), string.page(i).end());
-            task.spend(string.pages()[i]);
+            state.spend(string.pages()[i]);
         }
     }
     std::ranges::sort(sparse_, {}, [&](const Pair& pair) { return plan_.keys().key(pair); });
-    PageWriter writer(pages_, task.sorted);
+    PageWriter writer(pages_, state.sorted);
     for (std::span<const Pair> left = sparse_; !left.empty();) {
         const auto part = left.first(std::min(left.size(), writer.left()));
         std::ranges::copy(part, writer.next());
@@ -142,7 +143,7 @@ void BucketSort::sort_sparse(const std::vector<PageString>& strings, Task& task)
     writer.finish();
 }
 
-void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task) {
+void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, CallState& state) {
     count_path(Path::bucket_sorted);
     const PairKeys& keys = plan_.keys();
     const unsigned column_bits = keys.column_bits();
@@ -185,15 +186,15 @@ void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsig
                 while (k < page.size() && row_of(page[k]) == row);
                 ends[row] = at;
             }
-            task.spend(string.pages()[i]);
+            state.spend(string.pages()[i]);
         }
     }
-    write_rows({ends, first_row}, std::min(bits, column_bits), task);
+    write_rows({ends, first_row}, std::min(bits, column_bits), state);
 }
 
 /// Sorts the columns of each row and writes the pairs to pages.
-void BucketSort::write_rows(const Rows& rows, unsigned bits, Task& task) {
-    PageWriter writer(pages_, task.sorted);
+void BucketSort::write_rows(const Rows& rows, unsigned bits, CallState& state) {
+    PageWriter writer(pages_, state.sorted);
     std::uint32_t begin = 0;
     for (std::size_t row = 0; begin < rows.ends.back();) {
         // As many rows as fit into the page. Without any, a single row, which is long or goes beyond the page.

@@ -18,10 +18,26 @@
 
 #include "base/radix_sort.hpp"
 #include "base/tuning.hpp"
-#include "engine/ascending_bounds.hpp"
 #include "engine/pair_pages.hpp"
 
 namespace octopair {
+
+/// Objects [begin, end).
+struct ObjectRange {
+    std::uint64_t begin = 0;
+    std::uint64_t end = 0;
+};
+
+/// The parameters of a pass that finds pairs in ascending order.
+struct AscendingBounds {
+    ObjectRange rows;                                 ///< range of `a`; pairs with another `a` are skipped
+    std::uint64_t columns = 0;                        ///< upper bound on `b`: every b < columns
+    std::uint64_t max_pairs = ~std::uint64_t(0) / 2;  ///< capacity of all pages together, in pairs
+    std::uint64_t expected = 0;                       ///< expected number of pairs; 0: unknown
+};
+
+/// Thrown by a pass that needs more pages than `max_pairs` allows. At most a quarter of its pages are then partly filled.
+struct OverBudget {};
 
 /// Maps pairs to integer keys in ascending order of pairs. Keys have only the bits that the rows and columns need.
 class PairKeys {
@@ -90,18 +106,18 @@ public:
     Runs sort(std::vector<PageString>&& strings, const std::stop_token& stop, std::vector<Pair*>* spent = nullptr);
 
 private:
-    struct Task;
-    void sort(std::vector<PageString>&& strings, unsigned bits, Task& task);
-    void split(std::vector<PageString>&& strings, unsigned bits, Task& task);
+    struct CallState;
+    void sort(std::vector<PageString>&& strings, unsigned bits, CallState& state);
+    void split(std::vector<PageString>&& strings, unsigned bits, CallState& state);
     class PageWriter;
     /// Rows of a bucket: positions behind their last columns in `columns_`, and the object `a` of the first row.
     struct Rows {
         std::span<const std::uint32_t> ends;
         std::uint64_t first;
     };
-    void sort_sparse(const std::vector<PageString>& strings, Task& task);
-    void sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, Task& task);
-    void write_rows(const Rows& rows, unsigned bits, Task& task);
+    void sort_sparse(const std::vector<PageString>& strings, CallState& state);
+    void sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, CallState& state);
+    void write_rows(const Rows& rows, unsigned bits, CallState& state);
     void write_row(std::uint32_t row, std::span<const std::uint32_t> columns, unsigned bits, PageWriter& writer);
     std::span<const std::uint32_t> sorted_columns(std::span<const std::uint32_t> columns, unsigned bits);
     void mark_columns(std::span<const std::uint32_t> columns, std::uint32_t least, std::uint32_t greatest);

@@ -1,5 +1,7 @@
 // Engine: the public calls. They check the request, and pass it to the engine that derives from Engine.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <new>
 #include <string>
@@ -12,8 +14,8 @@
 #include "engine/job_task.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
-#include "engine/verified_call.hpp"
 #include "octopair/error.hpp"
+#include "verification/verifier.hpp"
 
 namespace octopair {
 
@@ -56,8 +58,81 @@ void Engine::check(const detail::Request& request) const { detail::check_request
 
 unsigned Engine::verification_threads() const { return 0; }
 
-/// Runs one public call. Refuses calls from callbacks of this engine, whose turn would never come. Checks the request first and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty
-/// on failure. Sinks and progress callbacks also run in the default floating-point state.
+namespace {
+
+/// A call with Options::verify. Checks the engine's result before the caller receives it, in the caller's process, with every engine.
+/// A list is checked when it is complete. Of a stream, each batch is checked before the caller's sink receives it, and the whole
+/// stream at its end.
+class VerifiedCall {
+public:
+    using Run = std::function<Summary(const detail::Request&, const detail::Output&, const detail::Control&)>;
+
+    VerifiedCall(const detail::Request& request, const detail::Output& output, const detail::Control& control)
+        : request_(request), output_(output), control_(control) {}
+
+    /// Calls `run` once and checks its result on `threads` threads of this process; 0: one per core.
+    /// Throws: what `run` throws; Error{engine_failed} if the result is wrong. The caller must then empty the list.
+    Summary run(unsigned threads, const Run& run) {
+        Verifier verifier({{request_.first, request_.second, request_.options.margin},
+                           kind(),
+                           request_.options.limit,
+                           threads,
+                           control_.stop});
+        const PairSink checked = [&](std::span<const Pair> pairs) {
+            verifier.take(pairs);
+            (*output_.sink)(pairs);
+        };
+        const double half = is_stream() && kind() == ResultKind::ascending ? stream_progress : search_progress;
+        const ProgressSink progress = part(0, half);
+        detail::Output output = output_;
+        if (is_stream()) output.sink = &checked;
+        Summary summary = run(request_, output, {control_.stop, progress});
+        summary.seconds = std::max(0.0, summary.seconds - verifier.seconds());
+        verifier.set_progress(part(half, 1));
+        if (output_.list != nullptr) {
+            summary.verification = check_list(verifier, summary);
+        } else {
+            summary.verification = verifier.finish({summary.pairs, summary.truncated});
+        }
+        if (control_.progress) control_.progress(1);
+        return summary;
+    }
+
+private:
+    /// Fraction of the progress for the engine's search. The check takes longer, and reports its own progress better.
+    static constexpr double search_progress = 0.3;
+    /// Fraction for the search of an ascending stream: most of the stream is checked before its last pair is found.
+    static constexpr double stream_progress = 0.9;
+
+    bool is_stream() const { return output_.sink != nullptr; }
+    ResultKind kind() const {
+        if (output_.list == nullptr && output_.sink == nullptr) return ResultKind::count;
+        return request_.options.order == Order::octal ? ResultKind::octal : ResultKind::ascending;
+    }
+    /// Returns a sink that maps the progress of a part of the work, 0 to 1, to [begin, end] of the caller's progress.
+    ProgressSink part(double begin, double end) const {
+        if (!control_.progress) return {};
+        return [&progress = control_.progress, begin, end, reported = 0.0](double done) mutable {
+            reported = std::max(reported, done);  // a check that passes over the objects twice starts again at 0
+            progress(begin + (end - begin) * reported);
+        };
+    }
+    Verification check_list(Verifier& verifier, const Summary& summary) {
+        const auto chunks = output_.list->chunks();
+        for (const auto chunk : chunks) verifier.take(chunk);
+        return verifier.finish({summary.pairs, summary.truncated, chunks});
+    }
+
+    const detail::Request& request_;
+    const detail::Output& output_;
+    const detail::Control& control_;
+};
+
+}  // namespace
+
+/// Runs one public call. Refuses calls from callbacks of this engine, whose turn would never come. Checks the request first, and turns
+/// std::bad_alloc into Error{resource_limit}. Leaves the list empty on failure. Sinks and progress callbacks also run in the default
+/// floating-point state.
 Summary Engine::call(const detail::Request& request, const detail::Output& output, std::stop_token stop) {
     refuse_inside_call_of(this);
     const FloatingPointScope scope;

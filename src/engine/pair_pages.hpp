@@ -30,7 +30,7 @@ public:
     void give_back(Pair* page) { returned_.push_back(page); }
 
 private:
-    /// Returns a new page. Throws: OverBudget (ascending_bounds.hpp).
+    /// Returns a new page. Throws: OverBudget (bucket_sort.hpp).
     virtual Pair* fresh() = 0;
 
     std::vector<Pair*> returned_;

@@ -19,14 +19,6 @@ constexpr double progress_after_build = 0.3;
 /// Progress of an ascending stream after the pairs are collected. The rest is for the receiver, whose sink may be slow.
 constexpr double progress_after_collection = 0.6;
 
-}  // namespace
-
-std::uint64_t Call::buffer_pairs() const {
-    return std::max(request.options.buffer_bytes, tuning().output.min_buffer_bytes) / sizeof(Pair);
-}
-
-namespace {
-
 /// Frees the resources that only the call needs when the call ends.
 struct CallCleanup {
     Passes& passes;

@@ -5,27 +5,43 @@
 //   A waiting thread can be stopped, unlike a thread that waits for a mutex.
 #pragma once
 
+#include <algorithm>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <mutex>
 #include <stop_token>
+#include <utility>
 
-#include "base/private_export.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair {
 
-class OCTOPAIR_PRIVATE_EXPORT TicketLock {
+class TicketLock {
 public:
     /// Holds the lock while it exists.
     class Guard {
     public:
         /// Waits until all earlier guards are released.
         /// Throws: Error{cancelled} if `stop` is requested while it waits; std::bad_alloc.
-        Guard(TicketLock& lock, std::stop_token stop);
+        Guard(TicketLock& lock, std::stop_token stop) : lock_(lock) {
+            std::unique_lock mutex_lock(lock_.mutex_);
+            auto& tickets = lock_.tickets_;
+            const std::uint64_t ticket = lock_.next_ticket_++;
+            tickets.push_back(ticket);
+            const auto is_front = [&] { return tickets.front() == ticket; };
+            if (is_front() || lock_.changed_.wait(mutex_lock, std::move(stop), is_front)) return;
+            // No notification is needed: this ticket is not the front one, so its removal lets no other thread continue.
+            tickets.erase(std::find(tickets.begin(), tickets.end(), ticket));
+            throw Error(ErrorCode::cancelled, "cancelled");
+        }
         Guard(const Guard&) = delete;
         Guard& operator=(const Guard&) = delete;
-        ~Guard();
+        ~Guard() {
+            const std::lock_guard mutex_lock(lock_.mutex_);
+            lock_.tickets_.pop_front();
+            if (!lock_.tickets_.empty()) lock_.changed_.notify_all();
+        }
 
     private:
         TicketLock& lock_;

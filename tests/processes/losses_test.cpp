@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "engine/processes/worker_limits.hpp"
+#include "engine/processes/worker_timeouts.hpp"
 #include "processes/asked.hpp"
 #include "processes/fault_plan.hpp"
 #include "processes/leftovers.hpp"
@@ -132,7 +132,7 @@ public:
 
     void begin_call() {
         const std::lock_guard lock(mutex_);
-        left_ = worker_limits::max_deaths_per_share - 1;
+        left_ = worker_failures::max_deaths_per_share - 1;
     }
 
 private:

@@ -59,8 +59,8 @@ private:
     }
 };
 
-// The first message of every call has one form, whatever the call is. So ranks whose calls differ see that, and do not wait for each
-// other for ever.
+// The first message of a call has the same form for all kinds of calls. So ranks that make different calls detect it, and do not wait
+// without end.
 
 /// Collective. Combines the searches of all ranks into one. `max_objects`: maximum number of objects of all ranks together.
 /// Throws: the same Error on all ranks if the options or sizes of a rank are invalid, or if the ranks' calls differ.

@@ -1,15 +1,44 @@
 // RankPasses: builds the linear octree of the objects that a rank received, and scans the octants that the rank owns.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
+#include <thread>
 #include <utility>
 
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/order/ascending_pieces.hpp"
 #include "engine/mpi/positioned_source.hpp"
-#include "engine/mpi/rank_executor.hpp"
 #include "engine/threads/thread_passes.hpp"
+#include "octree/executor.hpp"
 #include "octree/linear_octree.hpp"
 
 namespace octopair {
+
+/// Runs the shares of a rank on another executor. Shares that run on the calling thread poll for stop requests of other ranks. Drops
+/// pairs that are not wanted.
+/// Requires: construction on the thread of the call. Only that thread polls for stop requests.
+class RankExecutor final : public Executor {
+public:
+    /// Borrows `executor`, `stops` and `wanted.marks`.
+    RankExecutor(Executor& executor, StopRelay& stops, const WantedRows& wanted = {})
+        : executor_(executor), stops_(stops), wanted_(wanted) {}
+
+    unsigned width() const override { return executor_.width(); }
+    void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
+    void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
+
+private:
+    class Writer;
+    void poll_stops();
+
+    Executor& executor_;
+    StopRelay& stops_;
+    WantedRows wanted_;
+    std::thread::id thread_ = std::this_thread::get_id();
+};
 
 /// Part of a call that one rank runs.
 struct RankShare {

@@ -13,8 +13,6 @@
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/order/ascending_pieces.hpp"
 #include "engine/mpi/order/index_order.hpp"
-#include "engine/mpi/order/indexed_pairs.hpp"
-#include "engine/mpi/rank_task.hpp"
 #include "engine/receiver.hpp"
 #include "octopair/error.hpp"
 
@@ -25,34 +23,34 @@ RankSearch::RankSearch(Communicator& comm, const MpiOptions& options, std::funct
 
 Summary RankSearch::run(const detail::Request& request, const detail::Output& output, const detail::Control& control,
                         Recipients recipients) {
-    Task task(*this, request, output, control.progress);
-    task.recipients = recipients;
-    if (recipients == Recipients::first && output.sink != nullptr) task.relay.emplace(comm_, *output.sink);
-    return run(task, control);
+    RankCall rank_call(*this, request, output, control.progress);
+    rank_call.recipients = recipients;
+    if (recipients == Recipients::first && output.sink != nullptr) rank_call.relay.emplace(comm_, *output.sink);
+    return run(rank_call, control);
 }
 
 Summary RankSearch::run(const detail::Request& request, const IndexedCall& indexed, const detail::Control& control) {
     const detail::Output none;
-    Task task(*this, request, none, control.progress);
-    task.indexed = &indexed;
-    return run(task, control);
+    RankCall rank_call(*this, request, none, control.progress);
+    rank_call.indexed = &indexed;
+    return run(rank_call, control);
 }
 
-Summary RankSearch::run(Task& task, const detail::Control& control) {
-    const std::stop_callback forward(control.stop, [&] { task.stop.request_stop(); });
+Summary RankSearch::run(RankCall& rank_call, const detail::Control& control) {
+    const std::stop_callback forward(control.stop, [&] { rank_call.stop.request_stop(); });
     const auto end = [&] {
         detail::storage_of(found_).reset();
-        task.stops.end();
+        rank_call.stops.end();
     };
     try {
-        const Timed timed(task.summary.seconds);
+        const Timed timed(rank_call.summary.seconds);
         const Traffic before = comm_.traffic();
         costs_ = {};
-        find(task);
-        if (task.recipients == Recipients::first && task.output.list != nullptr) {
+        find(rank_call);
+        if (rank_call.recipients == Recipients::first && rank_call.output.list != nullptr) {
             PairList all;
-            gather_pieces(*task.output.list, detail::storage_of(all));
-            *task.output.list = std::move(all);
+            gather_pieces(*rank_call.output.list, detail::storage_of(all));
+            *rank_call.output.list = std::move(all);
         }
         const Traffic& after = comm_.traffic();
         costs_.mpi = after.cpu_seconds - before.cpu_seconds;
@@ -63,8 +61,8 @@ Summary RankSearch::run(Task& task, const detail::Control& control) {
         throw;
     }
     end();
-    task.progress.finish();
-    return task.summary;
+    rank_call.progress.finish();
+    return rank_call.summary;
 }
 
 void RankSearch::skip() noexcept {
@@ -80,57 +78,58 @@ void RankSearch::skip() noexcept {
     }
 }
 
-void RankSearch::join(Task& task) {
-    const Metered metered(comm_, costs_.join);
-    const detail::Request& asked = task.request;
-    const OutputKind output_kind = task.indexed != nullptr ? OutputKind::indexed : output_kind_of(task.output);
-    const std::uint64_t most = task.indexed != nullptr ? ~std::uint64_t(0) : max_objects;
-    task.joint = join_call(comm_, asked, output_kind, most);
-    task.slices[0] = task.joint.slice(0, asked.first);
-    if (task.joint.join) task.slices[1] = task.joint.slice(1, *asked.second);
-    if (task.indexed == nullptr) return;
-    for (unsigned set = 0; set < task.sets(); ++set) {
-        task.order.take(task.joint, set, task.slices[set], task.indexed->indices[set]);
-        task.slices[set] = task.order.objects(set);
+void RankSearch::join(RankCall& rank_call) {
+    const CostMeter meter(comm_, costs_.join);
+    const detail::Request& asked = rank_call.request;
+    const OutputKind output_kind =
+        rank_call.indexed != nullptr ? OutputKind::indexed : output_kind_of(rank_call.output);
+    const std::uint64_t most = rank_call.indexed != nullptr ? ~std::uint64_t(0) : max_objects;
+    rank_call.joint = join_call(comm_, asked, output_kind, most);
+    rank_call.slices[0] = rank_call.joint.slice(0, asked.first);
+    if (rank_call.joint.join) rank_call.slices[1] = rank_call.joint.slice(1, *asked.second);
+    if (rank_call.indexed == nullptr) return;
+    for (unsigned set = 0; set < rank_call.sets(); ++set) {
+        rank_call.order.take(rank_call.joint, set, rank_call.slices[set], rank_call.indexed->indices[set]);
+        rank_call.slices[set] = rank_call.order.objects(set);
     }
-    const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
-    task.joint = join_call(comm_, {task.slices[0], second, asked.options}, output_kind, most);
-    task.joint.indexed = true;
-    for (unsigned set = 0; set < task.sets(); ++set) task.joint.indices[set] = task.order.indices(set);
+    const Objects* const second = rank_call.joint.join ? &rank_call.slices[1] : nullptr;
+    rank_call.joint = join_call(comm_, {rank_call.slices[0], second, asked.options}, output_kind, most);
+    rank_call.joint.indexed = true;
+    for (unsigned set = 0; set < rank_call.sets(); ++set) rank_call.joint.indices[set] = rank_call.order.indices(set);
 }
 
-void RankSearch::find(Task& task) {
-    const detail::Request& asked = task.request;
-    join(task);
-    costs_.objects = task.joint.sizes[0] + task.joint.sizes[1];
-    const Objects& first = task.slices[0];
-    const Objects* const second = task.joint.join ? &task.slices[1] : nullptr;
-    const BoxSource own(first, second, task.joint.form);
+void RankSearch::find(RankCall& rank_call) {
+    const detail::Request& asked = rank_call.request;
+    join(rank_call);
+    costs_.objects = rank_call.joint.sizes[0] + rank_call.joint.sizes[1];
+    const Objects& first = rank_call.slices[0];
+    const Objects* const second = rank_call.joint.join ? &rank_call.slices[1] : nullptr;
+    const BoxSource own(first, second, rank_call.joint.form);
     if (comm_.size() == 1) {
-        passes_.set_share(plan_alone(task, own), task.stops);
-        return search(task, {first, second, asked.options});
+        passes_.set_share(plan_alone(rank_call, own), rank_call.stops);
+        return search(rank_call, {first, second, asked.options});
     }
-    passes_.set_share(plan_and_route(task, own), task.stops);
+    passes_.set_share(plan_and_route(rank_call, own), rank_call.stops);
     const Objects first_received = received(0), second_received = received(1);
-    search(task, {first_received, task.joint.join ? &second_received : nullptr, asked.options});
+    search(rank_call, {first_received, rank_call.joint.join ? &second_received : nullptr, asked.options});
 }
 
-void RankSearch::search(Task& task, const detail::Request& own_octants) {
-    const BoxSource source(own_octants.first, own_octants.second, task.joint.form);
+void RankSearch::search(RankCall& rank_call, const detail::Request& own_octants) {
+    const BoxSource source(own_octants.first, own_octants.second, rank_call.joint.form);
     // The call has a stop source of its own: if this rank abandons its part of a pass, as at a limit, other ranks continue.
-    Call call{own_octants, task.output, source, {}, task.progress, {}};
-    const std::stop_callback forward(task.stop.get_token(), [&] { call.stop.request_stop(); });
-    if (task.indexed != nullptr) {
-        find_indexed(task, call);
-    } else if (output_kind_of(task.output) == OutputKind::count) {
-        count(task, call);
-    } else if (task.request.options.order == Order::octal) {
-        find_octal(task, call);
+    Call call{own_octants, rank_call.output, source, {}, rank_call.progress, {}};
+    const std::stop_callback forward(rank_call.stop.get_token(), [&] { call.stop.request_stop(); });
+    if (rank_call.indexed != nullptr) {
+        find_indexed(rank_call, call);
+    } else if (output_kind_of(rank_call.output) == OutputKind::count) {
+        count(rank_call, call);
+    } else if (rank_call.request.options.order == Order::octal) {
+        find_octal(rank_call, call);
     } else {
-        find_ascending(task, call);
+        find_ascending(rank_call, call);
     }
-    task.summary.entries = comm_.sum(call.summary.entries);
-    task.summary.steps = call.summary.steps;
+    rank_call.summary.entries = comm_.sum(call.summary.entries);
+    rank_call.summary.steps = call.summary.steps;
 }
 
 namespace {
@@ -167,41 +166,43 @@ auto hand_out(const PairList& pairs) {
 
 }  // namespace
 
-std::uint64_t RankSearch::allowed(Task& task, const PiecePlan& plan) const {
+std::uint64_t RankSearch::allowed(RankCall& rank_call, const PiecePlan& plan) const {
     std::vector<std::uint64_t> pieces(comm_.size());
     for (unsigned rank = 0; rank < comm_.size(); ++rank) pieces[rank] = plan.pairs(rank);
-    return octopair::allowed(pieces, comm_.rank(), task.request.options, task.summary);
+    return octopair::allowed(pieces, comm_.rank(), rank_call.request.options, rank_call.summary);
 }
 
 /// Finds pairs in this rank's object numbers, and replaces the numbers by indices. For ascending order, each pair is sent to
 /// the rank that its `a` belongs to.
-void RankSearch::find_indexed(Task& task, Call& call) {
-    const Options& options = task.request.options;
-    std::vector<Pair64>& pairs = task.indexed->pairs;
-    task.agreement.together([&] {
-        build(task, call);
-        const Metered metered(comm_, costs_.scan);
+void RankSearch::find_indexed(RankCall& rank_call, Call& call) {
+    const Options& options = rank_call.request.options;
+    std::vector<Pair64>& pairs = rank_call.indexed->pairs;
+    rank_call.agreement.together([&] {
+        build(rank_call, call);
+        const CostMeter meter(comm_, costs_.scan);
         passes_.list_octal(call, detail::storage_of(found_), 1);
         const auto indices = [&](unsigned set) {
-            return comm_.size() == 1 ? task.joint.indices[set] : std::as_const(exchanged_[set].received.indices).span();
+            return comm_.size() == 1 ? rank_call.joint.indices[set]
+                                     : std::as_const(exchanged_[set].received.indices).span();
         };
-        name_pairs(found_, indices(0), indices(task.joint.join ? 1 : 0), pairs);
+        name_pairs(found_, indices(0), indices(rank_call.joint.join ? 1 : 0), pairs);
         detail::storage_of(found_).reset();
     });
     if (options.order == Order::ascending) {
-        const Metered metered(comm_, costs_.order);
+        const CostMeter meter(comm_, costs_.order);
         sort_over_ranks(comm_, pairs);
     }
     const auto pieces = comm_.all_gather(std::uint64_t(pairs.size()));
-    pairs.resize(std::size_t(octopair::allowed(pieces, comm_.rank(), options, task.summary)));
+    pairs.resize(std::size_t(octopair::allowed(pieces, comm_.rank(), options, rank_call.summary)));
 }
 
 /// Passes each rank's pairs to the caller on that rank. With a relay, passes the pairs of all ranks, one rank after another, to
 /// the caller on rank 0.
-void RankSearch::deliver(Task& task, std::uint64_t allowance, const Give& give) {
-    if (!task.relay) return task.agreement.together([&] { (void)receive(task.output, allowance, give); });
+void RankSearch::deliver(RankCall& rank_call, std::uint64_t allowance, const Give& give) {
+    if (!rank_call.relay)
+        return rank_call.agreement.together([&] { (void)receive(rank_call.output, allowance, give); });
     for (unsigned from = 0; from < comm_.size(); ++from) {
-        task.relay->forward(from, [&](const PairSink& sink) { (void)receive({.sink = &sink}, allowance, give); });
+        rank_call.relay->forward(from, [&](const PairSink& sink) { (void)receive({.sink = &sink}, allowance, give); });
     }
 }
 
@@ -237,25 +238,25 @@ void RankSearch::gather_pieces(PairList& piece, detail::PairStorage& all) {
 }
 
 /// Call in the same Agreement::together() as the first pass, because the octree is then still in the cache.
-void RankSearch::build(Task& task, Call& call) {
+void RankSearch::build(RankCall& rank_call, Call& call) {
     constexpr double built = 0.3;  // progress after the build
-    const Metered metered(comm_, costs_.build);
+    const CostMeter meter(comm_, costs_.build);
     try {
         passes_.build(call, built);
     } catch (const LinearOctree::Invalid& invalid) {
-        if (comm_.size() == 1) task.joint.refuse(call.source, invalid.begin);
+        if (comm_.size() == 1) rank_call.joint.refuse(call.source, invalid.begin);
         throw_object_changed();
     }
 }
 
-void RankSearch::count(Task& task, Call& call) {
+void RankSearch::count(RankCall& rank_call, Call& call) {
     std::uint64_t pairs = 0;
-    task.agreement.together([&] {
-        build(task, call);
-        const Metered metered(comm_, costs_.scan);
+    rank_call.agreement.together([&] {
+        build(rank_call, call);
+        const CostMeter meter(comm_, costs_.scan);
         pairs = passes_.count(call, 1);
     });
-    (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+    (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), rank_call.request.options, rank_call.summary);
 }
 
 /// How a rank finds its pairs in octal order.
@@ -265,52 +266,54 @@ struct RankSearch::OctalPairs {
     std::uint64_t allowance;            // maximum number of pairs of this rank
 };
 
-void RankSearch::find_octal(Task& task, Call& call) {
-    const std::optional<std::uint64_t> limit = task.request.options.limit;
+void RankSearch::find_octal(RankCall& rank_call, Call& call) {
+    const std::optional<std::uint64_t> limit = rank_call.request.options.limit;
     std::uint64_t pairs = 0, allowance = ~std::uint64_t(0);
     if (limit) {
-        task.agreement.together([&] {
-            build(task, call);
-            const Metered metered(comm_, costs_.scan);
+        rank_call.agreement.together([&] {
+            build(rank_call, call);
+            const CostMeter meter(comm_, costs_.scan);
             pairs = passes_.count(call, 0.6);
         });
-        allowance = octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+        allowance =
+            octopair::allowed(comm_.all_gather(pairs), comm_.rank(), rank_call.request.options, rank_call.summary);
     }
     const auto build_first = [&] {
-        if (!limit) build(task, call);
+        if (!limit) build(rank_call, call);
     };
     const Give stream = [&](Receiver& receiver) {
         passes_.stream_octal(
             call, [&](std::span<const Pair> some) { receiver.take(some); }, 1);
     };
-    if (task.relay) {
-        pairs = relay_octal(task, call, {build_first, stream, allowance});
+    if (rank_call.relay) {
+        pairs = relay_octal(rank_call, call, {build_first, stream, allowance});
     } else {
-        task.agreement.together([&] {
+        rank_call.agreement.together([&] {
             build_first();
-            const Metered metered(comm_, costs_.scan);
-            if (task.output.list != nullptr && !limit) {
-                passes_.list_octal(call, detail::storage_of(*task.output.list), 1);
-                pairs = task.output.list->size();
+            const CostMeter meter(comm_, costs_.scan);
+            if (rank_call.output.list != nullptr && !limit) {
+                passes_.list_octal(call, detail::storage_of(*rank_call.output.list), 1);
+                pairs = rank_call.output.list->size();
             } else {
-                pairs = receive(task.output, allowance, stream);
+                pairs = receive(rank_call.output, allowance, stream);
             }
         });
     }
-    if (!limit) (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), task.request.options, task.summary);
+    if (!limit)
+        (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), rank_call.request.options, rank_call.summary);
 }
 
 /// Rank 0 streams its pairs while each other rank lists its own. A rank whose pairs do not fit into its buffer drops them, and
 /// finds them again when it is its turn to send. Returns the number of this rank's pairs.
-std::uint64_t RankSearch::relay_octal(Task& task, Call& call, const OctalPairs& own) {
+std::uint64_t RankSearch::relay_octal(RankCall& rank_call, Call& call, const OctalPairs& own) {
     bool listed = false;
     std::uint64_t pairs = 0;
-    task.agreement.together([&] {
+    rank_call.agreement.together([&] {
         own.build_first();
-        const Metered metered(comm_, costs_.scan);
+        const CostMeter meter(comm_, costs_.scan);
         if (own.allowance == 0) return;
         if (comm_.rank() == 0) {
-            pairs = receive(task.output, own.allowance, own.stream);
+            pairs = receive(rank_call.output, own.allowance, own.stream);
         } else {
             listed = list_octal(call, call.buffer_pairs());
         }
@@ -318,42 +321,42 @@ std::uint64_t RankSearch::relay_octal(Task& task, Call& call, const OctalPairs& 
     if (comm_.rank() != 0) count_path(listed ? Path::relay_listed : Path::relay_found_again);
     const Give give = listed ? Give(hand_out(found_)) : own.stream;
     for (unsigned from = 1; from < comm_.size(); ++from) {
-        task.relay->forward(from, [&](const PairSink& sink) {
+        rank_call.relay->forward(from, [&](const PairSink& sink) {
             if (own.allowance > 0) pairs = receive({.sink = &sink}, own.allowance, give);
         });
     }
     return pairs;
 }
 
-void RankSearch::find_ascending(Task& task, Call& call) {
-    const bool whole = task.output.list != nullptr && !task.request.options.limit;
+void RankSearch::find_ascending(RankCall& rank_call, Call& call) {
+    const bool whole = rank_call.output.list != nullptr && !rank_call.request.options.limit;
     if (comm_.size() == 1 && whole) {
-        task.agreement.together([&] { build(task, call); });
-        const Metered metered(comm_, costs_.scan);
-        detail::PairStorage& list = detail::storage_of(*task.output.list);
-        const std::uint64_t rows = task.joint.totals[0];
-        passes_.list_ascending(call, list, {{0, rows}, task.joint.columns()}, 1);
-        (void)octopair::allowed({list.size}, 0, task.request.options, task.summary);
+        rank_call.agreement.together([&] { build(rank_call, call); });
+        const CostMeter meter(comm_, costs_.scan);
+        detail::PairStorage& list = detail::storage_of(*rank_call.output.list);
+        const std::uint64_t rows = rank_call.joint.totals[0];
+        passes_.list_ascending(call, list, {{0, rows}, rank_call.joint.columns()}, 1);
+        (void)octopair::allowed({list.size}, 0, rank_call.request.options, rank_call.summary);
         return;
     }
     // Pairs that are not returned as a whole list must fit into buffer_bytes.
     std::uint64_t over = 0;
-    task.agreement.together([&] {
-        build(task, call);
-        const Metered metered(comm_, costs_.scan);
+    rank_call.agreement.together([&] {
+        build(rank_call, call);
+        const CostMeter meter(comm_, costs_.scan);
         over = list_octal(call, whole ? ~std::uint64_t(0) : call.buffer_pairs() / 2) ? 0 : 1;
     });
-    if (comm_.sum(over) > 0) return find_windows(task, call);
-    const Metered metered(comm_, costs_.order);
-    AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns(),
+    if (comm_.sum(over) > 0) return find_windows(rank_call, call);
+    const CostMeter meter(comm_, costs_.order);
+    AscendingPieces pieces(comm_, passes_.threads(), rank_call.joint.columns(),
                            [&](std::uint64_t pairs) { call.progress.add(pairs); });
-    const PiecePlan plan = pieces.plan(found_, RowBins(task.joint.totals[0]));
+    const PiecePlan plan = pieces.plan(found_, RowBins(rank_call.joint.totals[0]));
     call.progress.stage(1, plan.pairs(comm_.rank()));
-    const std::uint64_t allowance = allowed(task, plan);
+    const std::uint64_t allowance = allowed(rank_call, plan);
     PairList sorted;
-    PairList& piece = whole ? *task.output.list : sorted;
-    pieces.exchange_and_sort(found_, plan, 0, detail::storage_of(piece), task.stop.get_token());
-    if (!whole) deliver(task, allowance, hand_out(piece));
+    PairList& piece = whole ? *rank_call.output.list : sorted;
+    pieces.exchange_and_sort(found_, plan, 0, detail::storage_of(piece), rank_call.stop.get_token());
+    if (!whole) deliver(rank_call, allowance, hand_out(piece));
 }
 
 /// Lists this rank's pairs in found_. Returns false, with found_ empty, if there are more than about `most` pairs.
@@ -379,12 +382,12 @@ bool RankSearch::list_octal(Call& call, std::uint64_t most) {
 
 /// Used if the pairs do not fit into the buffer. Counts the pairs of each bin of objects, then finds the pairs of as many
 /// objects at a time as fit into the buffer.
-void RankSearch::find_windows(Task& task, Call& call) {
-    const RowBins bins(task.joint.totals[0]);
+void RankSearch::find_windows(RankCall& rank_call, Call& call) {
+    const RowBins bins(rank_call.joint.totals[0]);
     std::vector<std::uint64_t> counts;
     detail::storage_of(found_).reset();  // the pairs of this rank may have fitted into its buffer
-    task.agreement.together([&] {
-        const Metered metered(comm_, costs_.scan);
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.scan);
         counts.resize(bins.size(), 0);
         passes_.count_rows(call, bins, counts, 0.5);
     });
@@ -393,23 +396,23 @@ void RankSearch::find_windows(Task& task, Call& call) {
     // A rank stores a window three times for a while: as found, sent and received pairs.
     const std::uint64_t fit = std::max<std::uint64_t>(1, call.buffer_pairs() / 3);
     const unsigned windows = unsigned(all / (fit * comm_.size()) + 1);
-    const PiecePlan plan(bins, counts, {comm_.size(), windows, task.relay.has_value()});
-    (void)allowed(task, plan);
-    const std::uint64_t limit = task.request.options.limit.value_or(all);
-    AscendingPieces pieces(comm_, passes_.threads(), task.joint.columns());
+    const PiecePlan plan(bins, counts, {comm_.size(), windows, rank_call.relay.has_value()});
+    (void)allowed(rank_call, plan);
+    const std::uint64_t limit = rank_call.request.options.limit.value_or(all);
+    AscendingPieces pieces(comm_, passes_.threads(), rank_call.joint.columns());
     for (unsigned window = 0; window < windows; ++window) {
         if (!plan.is_wanted(window, limit)) continue;
         count_path(Path::ranks_window);
         std::vector<std::uint8_t> marks;
         PairList sorted;
-        task.agreement.together([&] {
-            const Metered metered(comm_, costs_.scan);
+        rank_call.agreement.together([&] {
+            const CostMeter meter(comm_, costs_.scan);
             marks = plan.marks(window);
             passes_.set_wanted_rows({bins, marks});
             passes_.list_octal(call, detail::storage_of(found_), 0.5 + 0.5 * double(window + 1) / double(windows));
         });
-        pieces.exchange_and_sort(found_, plan, window, detail::storage_of(sorted), task.stop.get_token());
-        deliver(task, plan.allowed(comm_.rank(), window, limit), hand_out(sorted));
+        pieces.exchange_and_sort(found_, plan, window, detail::storage_of(sorted), rank_call.stop.get_token());
+        deliver(rank_call, plan.allowed(comm_.rank(), window, limit), hand_out(sorted));
     }
 }
 

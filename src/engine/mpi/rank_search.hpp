@@ -20,14 +20,20 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
+#include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/communicator.hpp"
+#include "engine/mpi/comm/relay.hpp"
+#include "engine/mpi/joint_call.hpp"
+#include "engine/mpi/order/index_order.hpp"
 #include "engine/mpi/partition/object_exchange.hpp"
 #include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_passes.hpp"
 #include "engine/pair_list.hpp"
+#include "engine/progress.hpp"
 #include "engine/request.hpp"
 #include "octopair/mpi.hpp"
 
@@ -66,33 +72,59 @@ public:
     const RankCosts& costs() const { return costs_; }
 
 private:
-    struct Task;
+    /// State of one call on this rank, which the steps pass on.
+    struct RankCall {
+        RankCall(RankSearch& search, const detail::Request& asked, const detail::Output& out, const ProgressSink& sink)
+            : request(asked),
+              output(out),
+              progress_sink(sink),
+              stops(search.comm_, stop, search.on_poll_),
+              agreement(search.comm_),
+              progress(sink),
+              order(search.comm_) {}
+
+        const detail::Request& request;
+        const detail::Output& output;
+        const IndexedCall* indexed = nullptr;
+        Recipients recipients = Recipients::all;
+        const ProgressSink& progress_sink;
+        std::stop_source stop;
+        StopRelay stops;
+        Agreement agreement;
+        Progress progress;
+        std::optional<Relay> relay;  // only if a sink of rank 0 receives all pairs
+        JointCall joint;
+        std::array<Objects, 2> slices;
+        IndexOrder order;  // used by indexed calls only
+        Summary summary;
+        unsigned sets() const { return joint.join ? 2 : 1; }
+    };
     static constexpr std::uint64_t max_objects =
         std::numeric_limits<std::uint32_t>::max();  // their indices fit into a Pair
     /// Passes this rank's pairs to a receiver.
     using Give = std::function<void(Receiver&)>;
     struct OctalPairs;
-    Summary run(Task& task, const detail::Control& control);
+    Summary run(RankCall& rank_call, const detail::Control& control);
     void gather_pieces(PairList& piece, detail::PairStorage& all);
-    void find(Task& task);
-    void join(Task& task);
-    RankShare plan_alone(Task& task, const BoxSource& own);
-    RankShare plan_and_route(Task& task, const BoxSource& own);
-    OctantOwners route(Task& task, const BoxSource& own, const OctreePlanning& planning);
-    RankShare grow(Task& task, OctreePlanning& planning, const OctantOwners& owners);
-    void exchange_objects(Task& task, Executor& executor, const Routing& routing);
+    void find(RankCall& rank_call);
+    void join(RankCall& rank_call);
+    RankShare plan_alone(RankCall& rank_call, const BoxSource& own);
+    RankShare plan_and_route(RankCall& rank_call, const BoxSource& own);
+    OctantOwners route(RankCall& rank_call, const BoxSource& own, const OctreePlanning& planning);
+    RankShare grow(RankCall& rank_call, OctreePlanning& planning, const OctantOwners& owners);
+    void exchange_objects(RankCall& rank_call, Executor& executor, const Routing& routing);
     Objects received(unsigned set) const { return exchanged_[set].received.view(); }
-    void search(Task& task, const detail::Request& own_octants);
-    void build(Task& task, Call& call);
-    void count(Task& task, Call& call);
-    void find_octal(Task& task, Call& call);
-    void find_ascending(Task& task, Call& call);
+    void search(RankCall& rank_call, const detail::Request& own_octants);
+    void build(RankCall& rank_call, Call& call);
+    void count(RankCall& rank_call, Call& call);
+    void find_octal(RankCall& rank_call, Call& call);
+    void find_ascending(RankCall& rank_call, Call& call);
     bool list_octal(Call& call, std::uint64_t most);
-    void find_windows(Task& task, Call& call);
-    void find_indexed(Task& task, Call& call);
-    std::uint64_t relay_octal(Task& task, Call& call, const OctalPairs& own);
-    std::uint64_t allowed(Task& task, const PiecePlan& plan) const;
-    void deliver(Task& task, std::uint64_t allowance, const Give& give);
+    void find_windows(RankCall& rank_call, Call& call);
+    void find_indexed(RankCall& rank_call, Call& call);
+    std::uint64_t relay_octal(RankCall& rank_call, Call& call, const OctalPairs& own);
+    std::uint64_t allowed(RankCall& rank_call, const PiecePlan& plan) const;
+    void deliver(RankCall& rank_call, std::uint64_t allowance, const Give& give);
 
     Communicator& comm_;
     std::function<void()> on_poll_;

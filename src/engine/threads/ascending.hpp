@@ -9,7 +9,7 @@
 #include <stop_token>
 
 #include "base/private_export.hpp"
-#include "engine/ascending_bounds.hpp"
+#include "engine/bucket_sort.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/threads/writers.hpp"
 

@@ -1,5 +1,4 @@
 // The local engine: runs the steps of the algorithm on the threads of this process.
-// Start here to add a new engine.
 
 #include "engine/job_queue.hpp"
 #include "engine/search.hpp"

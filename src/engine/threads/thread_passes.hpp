@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/private_export.hpp"
-#include "engine/search.hpp"
+#include "engine/passes.hpp"
 #include "octree/linear_octree.hpp"
 #include "octree/scan.hpp"
 #include "octree/scan_memory.hpp"

@@ -1,4 +1,4 @@
-// Metered: measures the processor time of each step of a call on this rank, without the time spent within MPI.
+// CostMeter: measures the processor time of each step of a call on this rank, without the time spent within MPI.
 //
 // Processor time of the calling thread is used, because wall-clock time is meaningless with fewer cores than ranks.
 #pragma once
@@ -18,12 +18,12 @@ inline double thread_seconds() {
 }
 
 /// Adds the processor time of its scope to `seconds`, also if an exception leaves the scope.
-class Metered {
+class CostMeter {
 public:
-    Metered(const Communicator& comm, double& seconds) : comm_(comm), seconds_(seconds) {}
-    Metered(const Metered&) = delete;
-    Metered& operator=(const Metered&) = delete;
-    ~Metered() { seconds_ += outside_mpi() - begin_; }
+    CostMeter(const Communicator& comm, double& seconds) : comm_(comm), seconds_(seconds) {}
+    CostMeter(const CostMeter&) = delete;
+    CostMeter& operator=(const CostMeter&) = delete;
+    ~CostMeter() { seconds_ += outside_mpi() - begin_; }
 
 private:
     double outside_mpi() const { return thread_seconds() - comm_.traffic().cpu_seconds; }

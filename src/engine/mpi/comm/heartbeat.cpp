@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/mpi/comm/backoff.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

@@ -8,7 +8,6 @@
 #include "base/stop.hpp"
 #include "base/timed.hpp"
 #include "engine/job_queue.hpp"
-#include "engine/mpi/comm/backoff.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/comm/heartbeat.hpp"
 #include "engine/mpi/leading/slice_distribution.hpp"

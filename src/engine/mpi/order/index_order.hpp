@@ -1,13 +1,16 @@
-// IndexOrder: sorts the objects of a call over all ranks by the indices that the caller gave them.
+// Calls with 64-bit indices: sorts the objects over all ranks by the indices that the caller gave them (IndexOrder), and afterwards the
+// pairs of these indices.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
+#include "octopair/mpi.hpp"
 
 namespace octopair {
 
@@ -34,5 +37,13 @@ private:
     std::array<ObjectArrays, 2> arrays_;
     std::array<Objects, 2> objects_;
 };
+
+/// Appends the pairs of `found` to `pairs`, with `a` and `b` replaced by their indices. Requires: `pairs` is empty.
+void name_pairs(const PairList& found, std::span<const std::uint64_t> a_indices,
+                std::span<const std::uint64_t> b_indices, std::vector<Pair64>& pairs);
+
+/// Collective. Replaces this rank's pairs by its piece of the ascending sequence of the pairs of all ranks.
+/// Throws: as Agreement::together.
+void sort_over_ranks(Communicator& comm, std::vector<Pair64>& pairs);
 
 }  // namespace octopair

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "engine/mpi/comm/communicator.hpp"
-#include "octree/build/split_rule.hpp"
 #include "octree/directory.hpp"
+#include "octree/encode/split_rule.hpp"
 
 namespace octopair {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/passes.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
 #include "engine/processes/client/worker_pool.hpp"
-#include "engine/search.hpp"
 
 namespace octopair {
 

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/passes.hpp"
 #include "engine/processes/client/worker_pool.hpp"
-#include "engine/search.hpp"
 
 namespace octopair {
 

@@ -8,8 +8,8 @@
 #include <stop_token>
 #include <vector>
 
+#include "engine/passes.hpp"
 #include "engine/processes/client/worker_pool.hpp"
-#include "engine/search.hpp"
 
 namespace octopair {
 

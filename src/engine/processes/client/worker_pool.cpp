@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/control_group.hpp"
-#include "engine/processes/worker_limits.hpp"
+#include "engine/processes/worker_timeouts.hpp"
 #include "octopair/error.hpp"
 #include "octree/linear_octree.hpp"
 
@@ -67,7 +67,7 @@ void WorkerPool::count_fault(std::uint64_t& fault) {
 void WorkerPool::start(unsigned slot) {
     Member& member = pool_[slot];
     ProcessEnd end;
-    for (unsigned i = 0; i < worker_limits::max_failed_starts; ++i) {
+    for (unsigned i = 0; i < worker_failures::max_failed_starts; ++i) {
         member.process = nullptr;
         view_.slot(slot).attached.store(0);
         view_.slot(slot).waits.store(0);
@@ -137,7 +137,7 @@ std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<
     last_pass_ = pass;
     active_workers_ = pass.workers;
     // A polling client would take processor time from the workers if there are no more cores than workers.
-    max_spins_ = active_workers_ < available_cores() ? worker_limits::max_spins_for_pass_end : 0;
+    max_spins_ = active_workers_ < available_cores() ? worker_timeouts::max_spins_for_pass_end : 0;
     needed_ = regions;
     failure_ = nullptr;
     forget_regions();
@@ -147,12 +147,12 @@ std::uint32_t WorkerPool::run(const Pass& pass, std::span<const std::shared_ptr<
 
     const std::stop_callback wake(watch.stop, [&] { view_.control_block().for_client.raise(); });
     changed_at_ = Clock::now();
-    Clock::time_point next_check = Clock::now() + worker_limits::check_interval;
+    Clock::time_point next_check = Clock::now() + worker_timeouts::check_interval;
     for (bool over = false; !over;) {
         const std::uint32_t seen = view_.control_block().for_client.count.load();
         over = all_finished();
         const bool check = !over && Clock::now() >= next_check;
-        if (check) next_check = Clock::now() + worker_limits::check_interval;
+        if (check) next_check = Clock::now() + worker_timeouts::check_interval;
         try {
             poll(watch, over, check);
         } catch (...) {
@@ -195,11 +195,11 @@ void WorkerPool::check_members(const PassWatch& watch) {
         if (state == ProcessState::runs) {
             const bool attached = view_.slot(slot).attached.load() != 0;
             if (attached) member.failed_starts = 0;
-            if (attached || Clock::now() - member.started_at < worker_limits::attach_timeout) continue;
+            if (attached || Clock::now() - member.started_at < worker_timeouts::attach_timeout) continue;
         }
         handle_lost_worker(slot, state != ProcessState::ended, watch);
     }
-    if (failure_ != nullptr && Clock::now() - failed_at_ > worker_limits::pass_exit_timeout)
+    if (failure_ != nullptr && Clock::now() - failed_at_ > worker_timeouts::pass_exit_timeout)
         kill_unresponsive_workers();
     if (failure_ == nullptr) check_deadlock();
 }
@@ -210,10 +210,10 @@ void WorkerPool::check_deadlock() {
     if (now != last_events_ || !all_wait()) {
         last_events_ = now;
         changed_at_ = Clock::now();
-    } else if (Clock::now() - changed_at_ > worker_limits::deadlock_timeout) {
-        fail(std::make_exception_ptr(Error(ErrorCode::engine_failed,
-                                           "worker processes wait for each other: no work was done for " +
-                                               std::to_string(worker_limits::deadlock_timeout.count() / 1000) + " s")));
+    } else if (Clock::now() - changed_at_ > worker_timeouts::deadlock_timeout) {
+        fail(std::make_exception_ptr(Error(
+            ErrorCode::engine_failed, "worker processes wait for each other: no work was done for " +
+                                          std::to_string(worker_timeouts::deadlock_timeout.count() / 1000) + " s")));
     }
 }
 
@@ -244,7 +244,7 @@ void WorkerPool::handle_lost_worker(unsigned slot, bool stopped, const PassWatch
     count_fault(stopped ? faults_.stopped : faults_.ended);
     try {
         member.failed_starts = attached ? 0 : member.failed_starts + 1;
-        if (member.failed_starts >= worker_limits::max_failed_starts) {
+        if (member.failed_starts >= worker_failures::max_failed_starts) {
             member.failed_starts = 0;
             throw_cannot_start(end);
         }
@@ -281,8 +281,8 @@ void WorkerPool::count_death(unsigned slot) {
         if (part.preparing.load() == 0) return check_crash_loop(slot);
         share = preparing - slot;
     }
-    if (++deaths_by_share_[share] < worker_limits::max_deaths_per_share) return;
-    throw Error(ErrorCode::engine_failed, std::to_string(worker_limits::max_deaths_per_share) +
+    if (++deaths_by_share_[share] < worker_failures::max_deaths_per_share) return;
+    throw Error(ErrorCode::engine_failed, std::to_string(worker_failures::max_deaths_per_share) +
                                               " worker processes died in the same share of step " +
                                               step_names[std::size_t(step)]);
 }
@@ -291,8 +291,8 @@ void WorkerPool::count_death(unsigned slot) {
 void WorkerPool::check_crash_loop(unsigned slot) {
     Member& member = pool_[slot];
     member.deaths_between_shares =
-        Clock::now() - member.started_at > worker_limits::healthy_lifetime ? 1 : member.deaths_between_shares + 1;
-    if (member.deaths_between_shares < worker_limits::max_deaths_between_shares) return;
+        Clock::now() - member.started_at > worker_timeouts::healthy_lifetime ? 1 : member.deaths_between_shares + 1;
+    if (member.deaths_between_shares < worker_failures::max_deaths_between_shares) return;
     throw Error(ErrorCode::engine_failed, "worker processes die repeatedly outside any share");
 }
 

@@ -3,7 +3,7 @@
 // Invariants
 //   A worker that dies or is stopped during a pass is replaced in its slot. The replacement worker runs the unfinished share
 //   again.
-//   A share in which three workers died fails the pass (worker_limits.hpp).
+//   A share in which three workers died fails the pass (worker_timeouts.hpp).
 #pragma once
 
 #include <sys/types.h>

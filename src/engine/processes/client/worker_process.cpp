@@ -8,19 +8,74 @@
 
 #include <array>
 #include <cerrno>
+#include <condition_variable>
 #include <csignal>
 #include <cstring>
+#include <mutex>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "base/child_process.hpp"
-#include "engine/processes/client/spawner.hpp"
 #include "engine/processes/worker/worker.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
+
+/// A thread that lives as long as this process, and starts the workers. The system sends a worker its parent-death signal when the
+/// thread ends that started the worker, not only when the process ends.
+class Spawner {
+public:
+    Spawner() : owner_(::getpid()) {
+        // The thread takes no signals: they belong to the threads of the application.
+        sigset_t all, before;
+        ::sigfillset(&all);
+        ::pthread_sigmask(SIG_SETMASK, &all, &before);
+        try {
+            std::thread([this] { serve(); }).detach();
+        } catch (...) {
+            ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+            throw;
+        }
+        ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    }
+
+    pid_t owner() const { return owner_; }
+
+    void run(const std::function<void()>& work) {
+        const std::lock_guard one_at_a_time(callers_);
+        std::unique_lock lock(mutex_);
+        work_ = &work;
+        changed_.notify_all();
+        changed_.wait(lock, [this] { return work_ == nullptr; });
+    }
+
+private:
+    [[noreturn]] void serve() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            changed_.wait(lock, [this] { return work_ != nullptr; });
+            (*work_)();
+            work_ = nullptr;
+            changed_.notify_all();
+        }
+    }
+
+    const pid_t owner_;
+    std::mutex callers_, mutex_;
+    std::condition_variable changed_;
+    const std::function<void()>* work_ = nullptr;
+};
+
+/// Runs `work` on the spawner thread and waits for it. In a process that was forked without that thread, runs it on this thread.
+/// Requires: `work` does not throw. Throws: std::system_error if the thread cannot be started.
+/// Thread safety: any thread may call it; one function runs at a time.
+void run_on_spawner(const std::function<void()>& work) {
+    static Spawner* const spawner = new Spawner;  // never destroyed, because its thread never ends
+    spawner->owner() == ::getpid() ? spawner->run(work) : work();
+}
 
 constexpr auto wait_by_handle = idtype_t(3);  // P_PIDFD, which not all headers have
 

@@ -6,7 +6,7 @@
 //             commits  two for each slot, written alternately: how far its buckets are filled (ascending order)
 //             rings    for each slot: filled blocks of pairs that the client has not taken yet (streams)
 //             logs     for each slot: the pages that its buckets (bucket_sort.hpp) have taken (ascending order)
-//   arena   data that one step writes and later steps read, at the same offsets in all processes (arena.hpp)
+//   arena   data that one step writes and later steps read, at the same offsets in all processes (Arena)
 //   pairs   blocks of pairs
 //   inputs  boxes and paddings: copies by the client, or arrays that the application allocated with the engine
 //
@@ -24,9 +24,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/ascending_bounds.hpp"
 #include "engine/bucket_sort.hpp"
-#include "engine/processes/shared_memory/futex.hpp"
+#include "engine/processes/shared_memory/event_count.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
@@ -72,7 +71,7 @@ struct Pass {
 enum class Outcome : std::uint32_t { none, done, failed, stopped, bad_box, over_budget };
 
 struct alignas(64) Slot {
-    Event command;                         ///< raised when `requested` changes or the ring has room again
+    EventCount command;                    ///< raised when `requested` changes or the ring has room again
     std::atomic<std::uint32_t> requested;  ///< number of the pass that the worker must run
     std::atomic<std::uint32_t> finished;   ///< number of the last finished pass, whose outcome is below
     std::atomic<std::uint32_t> attached;   ///< 1: the worker has mapped the control block and serves this slot
@@ -98,8 +97,8 @@ struct ControlBlock {
     std::array<char, 32> version;
     std::int32_t client;  ///< process id of the client
     std::atomic<std::uint32_t> slots;
-    Event among_workers;                 ///< raised when a worker finds no further share in a step
-    Event for_client;                    ///< raised when a worker finishes or writes a block of pairs
+    EventCount among_workers;            ///< raised when a worker finds no further share in a step
+    EventCount for_client;               ///< raised when a worker finishes or writes a block of pairs
     std::atomic<std::uint32_t> stopped;  ///< number of the pass that must stop
     std::atomic<std::uint64_t> next_block, next_run;
     std::atomic<std::int64_t> pages_left;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/stop.hpp"
-#include "engine/processes/worker_limits.hpp"
+#include "engine/processes/worker_timeouts.hpp"
 #include "engine/threads/writers.hpp"
 
 namespace octopair {
@@ -14,11 +14,11 @@ namespace {
 
 class CountOutput final : public ShareOutput, private ShareWriter {
 public:
-    ShareWriter& begin(const WorkSharing::Task&) override {
+    ShareWriter& begin(const WorkSharing::ClaimedShare&) override {
         pairs_ = 0;
         return *this;
     }
-    void end(const WorkSharing::Task& task) override { task.record.pairs = pairs_; }
+    void end(const WorkSharing::ClaimedShare& share) override { share.record.pairs = pairs_; }
 
 private:
     bool counting() const override { return true; }
@@ -31,8 +31,8 @@ private:
 class CountByObjectOutput final : public ShareOutput {
 public:
     explicit CountByObjectOutput(std::span<std::uint32_t> counts) : writer_(counts) {}
-    ShareWriter& begin(const WorkSharing::Task&) override { return writer_; }
-    void end(const WorkSharing::Task&) override {}
+    ShareWriter& begin(const WorkSharing::ClaimedShare&) override { return writer_; }
+    void end(const WorkSharing::ClaimedShare&) override {}
 
 private:
     CountByObjectWriter writer_;
@@ -44,11 +44,11 @@ class ListOutput final : public ShareOutput, private FullWriter {
 public:
     explicit ListOutput(const OutputPlace& place) : place_(place) {}
 
-    ShareWriter& begin(const WorkSharing::Task&) override {
+    ShareWriter& begin(const WorkSharing::ClaimedShare&) override {
         runs_.clear();
         return *this;
     }
-    void end(const WorkSharing::Task& task) override { record_runs(place_, runs_, task.record); }
+    void end(const WorkSharing::ClaimedShare& share) override { record_runs(place_, runs_, share.record); }
 
 private:
     void write(std::span<const Pair> pairs) override {
@@ -72,12 +72,12 @@ public:
     StreamOutput(const OutputPlace& place, const Pass& pass)
         : place_(place), pass_(pass), slot_(place.view.slot(place.shares.slot())) {}
 
-    ShareWriter& begin(const WorkSharing::Task& task) override {
-        share_ = task.number;
+    ShareWriter& begin(const WorkSharing::ClaimedShare& share) override {
+        share_ = share.number;
         block_ = {};
         return *this;
     }
-    void end(const WorkSharing::Task&) override {
+    void end(const WorkSharing::ClaimedShare&) override {
         if (block_.empty()) block_ = free_block();
         hand_over(true);
     }
@@ -101,7 +101,7 @@ private:
             if (filled - slot_.ring_taken.load() < pass_.ring_blocks) break;
             throw_if_stopped(place_.stop);
             const WaitingMark waiting(slot_);
-            slot_.command.wait(seen, worker_limits::max_event_sleep, 0);
+            slot_.command.wait(seen, worker_timeouts::max_event_sleep, 0);
         }
         held_ = 0;
         const std::uint64_t block = place_.shares.slot() * pass_.ring_blocks + filled % pass_.ring_blocks;

@@ -17,9 +17,9 @@ class ShareOutput {
 public:
     virtual ~ShareOutput() = default;
     /// Begins a share. Returns its writer, valid until the next begin(). Requires: the previous share has ended.
-    virtual ShareWriter& begin(const WorkSharing::Task& task) = 0;
+    virtual ShareWriter& begin(const WorkSharing::ClaimedShare& share) = 0;
     /// Completes the record of the current share.
-    virtual void end(const WorkSharing::Task& task) = 0;
+    virtual void end(const WorkSharing::ClaimedShare& share) = 0;
 };
 
 /// Destination of outputs: the tables and the region `pairs`.

@@ -80,7 +80,7 @@ SharedBuckets::SharedBuckets(const OutputPlace& place, const Pass& pass)
 
 SharedBuckets::~SharedBuckets() = default;
 
-ShareWriter& SharedBuckets::begin(const WorkSharing::Task&) {
+ShareWriter& SharedBuckets::begin(const WorkSharing::ClaimedShare&) {
     if (!std::exchange(restored_, true)) restore();
     return *writer_;
 }
@@ -96,7 +96,7 @@ void SharedBuckets::restore() {
     pages_->restore(commit.pages_taken);
 }
 
-void SharedBuckets::end(const WorkSharing::Task& task) {
+void SharedBuckets::end(const WorkSharing::ClaimedShare& share) {
     std::uint64_t more = 0;
     for (std::size_t bucket = 0; bucket < strings_.size(); ++bucket) {
         more += strings_[bucket].pages().size() - logged_[bucket];
@@ -112,7 +112,7 @@ void SharedBuckets::end(const WorkSharing::Task& task) {
     }
     commit.log_size = log_size_;
     commit.pages_taken = pages_->taken();
-    task.record.commit = ++commit_;
+    share.record.commit = ++commit_;
 }
 
 /// Returns the number of the slot's last commit that belongs to a finished share of the scan; 0 if there is none.
@@ -157,16 +157,16 @@ void SharedBuckets::order(WorkSharing& shares) {
     own.pairs_to_order.store(all);
     BucketSort sort(plan_, *pages_);
     std::vector<Pair*> spent;
-    shares.run(Step::order, plan_.buckets(), [&](const WorkSharing::Task& task) {
+    shares.run(Step::order, plan_.buckets(), [&](const WorkSharing::ClaimedShare& share) {
         std::vector<PageString> strings;
         strings.reserve(of_slots.size());
-        for (Strings& of_slot : of_slots) strings.push_back(std::move(of_slot[task.index]));
+        for (Strings& of_slot : of_slots) strings.push_back(std::move(of_slot[share.index]));
         const std::uint64_t pairs = pairs_in(strings);
         // The input pages of the previous share are free now, because that share is done. The input pages of this share must
         // stay unchanged until it is done, in case a replacement worker sorts them again.
         for (Pair* const page : spent) pages_->give_back(page);
         spent.clear();
-        record_runs(place_, sort.sort(std::move(strings), place_.stop, &spent), task.record);
+        record_runs(place_, sort.sort(std::move(strings), place_.stop, &spent), share.record);
         own.pairs_ordered.fetch_add(pairs);
     });
 }

@@ -18,8 +18,8 @@ public:
     SharedBuckets(const OutputPlace& place, const Pass& pass);
     ~SharedBuckets() override;
 
-    ShareWriter& begin(const WorkSharing::Task& task) override;
-    void end(const WorkSharing::Task& task) override;
+    ShareWriter& begin(const WorkSharing::ClaimedShare& share) override;
+    void end(const WorkSharing::ClaimedShare& share) override;
 
     /// Sorts the buckets of all slots. Requires: called as the last step of the pass, after the scan.
     void order(WorkSharing& shares);

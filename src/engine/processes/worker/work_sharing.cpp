@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/stop.hpp"
-#include "engine/processes/worker_limits.hpp"
+#include "engine/processes/worker_timeouts.hpp"
 
 namespace octopair {
 
@@ -36,20 +36,20 @@ bool WorkSharing::claim(Share& record) const {
     return packed == mine.packed();
 }
 
-void WorkSharing::do_share(const Task& task, const Body& body) {
-    Share& record = task.record;
-    slot_.share.store(task.number + 1);
+void WorkSharing::do_share(const ClaimedShare& share, const Body& body) {
+    Share& record = share.record;
+    slot_.share.store(share.number + 1);
     record.pairs = record.first_run = record.commit = 0;
     record.runs = 0;
     if (self_.observer != nullptr) self_.observer->begin(Step(record.step));
-    body(task);
+    body(share);
     if (self_.observer != nullptr) self_.observer->end();
     record.state.store(ShareState{self_.pass, ShareStatus::done, self_.slot}.packed());
     slot_.share.store(0);
 }
 
 void WorkSharing::wait_for_others(std::span<Share> records) {
-    Event& event = view_.control_block().among_workers;
+    EventCount& event = view_.control_block().among_workers;
     std::size_t done = 0;
     for (;;) {
         const std::uint32_t seen = event.count.load();
@@ -59,7 +59,7 @@ void WorkSharing::wait_for_others(std::span<Share> records) {
         if (done == records.size()) return;
         throw_if_stopped(stop_);
         const WaitingMark waiting(slot_);
-        event.wait(seen, worker_limits::max_event_sleep, worker_limits::max_spins_for_event);
+        event.wait(seen, worker_timeouts::max_event_sleep, worker_timeouts::max_spins_for_event);
     }
 }
 

@@ -34,12 +34,13 @@ public:
     };
     WorkSharing(ControlBlockView& view, const Self& self, std::stop_token stop);
 
-    struct Task {
+    /// A share that this worker has claimed.
+    struct ClaimedShare {
         std::uint64_t index;   ///< number of the share in its step
         std::uint64_t number;  ///< number of the share in its pass
         Share& record;
     };
-    using Body = std::function<void(const Task&)>;
+    using Body = std::function<void(const ClaimedShare&)>;
 
     /// Runs a step of `count` shares: calls `body` for each share that this worker claims, then waits until all are done.
     /// Throws: Error{cancelled}; what `body` throws.
@@ -53,7 +54,7 @@ public:
 
 private:
     bool claim(Share& record) const;
-    void do_share(const Task& task, const Body& body);
+    void do_share(const ClaimedShare& share, const Body& body);
     void wait_for_others(std::span<Share> records);
 
     ControlBlockView& view_;

@@ -11,8 +11,8 @@
 
 #include "base/floating_point_scope.hpp"
 #include "engine/processes/shared_memory/control_messages.hpp"
-#include "engine/processes/worker/worker_pass.hpp"
-#include "engine/processes/worker_limits.hpp"
+#include "engine/processes/worker/pass_runner.hpp"
+#include "engine/processes/worker_timeouts.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -78,7 +78,7 @@ public:
             throw Error(ErrorCode::engine_failed,
                         "the control block has no slot of the number given on the command line");
         view_ = &view;
-        WorkerProgram program(view, regions_);
+        PassRunner program(view, regions_);
         Slot& slot = view.slot(number_);
         slot.attached.store(1);
         view.control_block().for_client.raise();
@@ -88,7 +88,7 @@ public:
             if (requested == slot.finished.load()) {
                 if (forgot_.exchange(false)) program.forget_job();
                 const WaitingMark waiting(slot);
-                slot.command.wait(seen, worker_limits::max_command_sleep, worker_limits::max_spins_for_pass);
+                slot.command.wait(seen, worker_timeouts::max_command_sleep, worker_timeouts::max_spins_for_pass);
                 continue;
             }
             const Pass pass = view.control_block().pass;
@@ -117,7 +117,7 @@ private:
     bool client_lives() const {
         for (;;) {
             pollfd waiting{socket_.number(), POLLIN, 0};
-            const int ready = ::poll(&waiting, 1, int(worker_limits::client_check_interval.count()));
+            const int ready = ::poll(&waiting, 1, int(worker_timeouts::client_check_interval.count()));
             if (ready > 0) return true;
             if (::getppid() != parent_) return false;
         }

@@ -1,4 +1,4 @@
-// Event: lets processes wait for a change of a counter in shared memory. Built on Linux futexes.
+// EventCount: lets processes wait for a change of a counter in shared memory. Built on Linux futexes.
 #pragma once
 
 #include <linux/futex.h>
@@ -27,7 +27,7 @@ inline void futex_wake_all(std::atomic<std::uint32_t>& word) {
 }
 
 /// Counter of events. raise() makes a system call only while some process waits.
-struct Event {
+struct EventCount {
     std::atomic<std::uint32_t> count = 0;
     std::atomic<std::uint32_t> waiting = 0;
 

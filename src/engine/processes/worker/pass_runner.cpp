@@ -1,4 +1,4 @@
-#include "engine/processes/worker/worker_pass.hpp"
+#include "engine/processes/worker/pass_runner.hpp"
 
 #include <algorithm>
 #include <array>
@@ -86,7 +86,7 @@ void set_message(Slot& slot, const Error& error) {
 
 }  // namespace
 
-struct WorkerProgram::Job {
+struct PassRunner::Job {
     Job(const Pass& pass, WorkerRegions& regions)
         : number(pass.job),
           first(pass.first, regions),
@@ -106,12 +106,12 @@ struct WorkerProgram::Job {
     std::uint64_t built_mark = 0;  // mark of the arena after the build
 };
 
-WorkerProgram::WorkerProgram(ControlBlockView& view, WorkerRegions& regions) : view_(view), regions_(regions) {}
+PassRunner::PassRunner(ControlBlockView& view, WorkerRegions& regions) : view_(view), regions_(regions) {}
 
-WorkerProgram::~WorkerProgram() = default;
+PassRunner::~PassRunner() = default;
 
 /// Divides the steps that build the octree among the workers. The octree is in memory that all workers share.
-class WorkerProgram::BuildExecutor final : public Executor {
+class PassRunner::BuildExecutor final : public Executor {
 public:
     /// `built`: an earlier pass has run the steps.
     BuildExecutor(WorkSharing& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
@@ -120,7 +120,7 @@ public:
         constexpr std::array steps = {Step::encode, Step::count};
         const Step step = steps.at(step_++);
         if (built_) return;
-        shares_.run(step, count, [&](const WorkSharing::Task& task) { body(std::size_t(task.index)); });
+        shares_.run(step, count, [&](const WorkSharing::ClaimedShare& share) { body(std::size_t(share.index)); });
     }
     void for_each_writing(std::size_t, const std::function<void(std::size_t, ShareWriter&)>&) override {
         throw Error(ErrorCode::engine_failed, "a step without an output for pairs wrote pairs");
@@ -136,7 +136,7 @@ private:
 /// Divides the steps that write pairs, and the steps that build nested octrees of large octants, among the workers. Each
 /// worker sorts and measures sets of boxes itself. The results depend only on octrees that no longer change, so a
 /// replacement worker computes the same results.
-class WorkerProgram::ScanExecutor final : public Executor {
+class PassRunner::ScanExecutor final : public Executor {
 public:
     /// Borrows all arguments. `arena`: pages for nested octrees. The arena is not rewound before the pass ends: a slow or
     /// replacement worker still reads octrees that other workers no longer need.
@@ -147,15 +147,15 @@ public:
         for (std::size_t i = 0; i < count; ++i) body(i);
     }
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override {
-        shares_.run(Step::scan, count, [&](const WorkSharing::Task& task) {
-            ShareWriter& writer = output_.begin(task);
+        shares_.run(Step::scan, count, [&](const WorkSharing::ClaimedShare& share) {
+            ShareWriter& writer = output_.begin(share);
             if (shares_.observer() != nullptr) {
                 ObservedWriter observed(writer, *shares_.observer());
-                body(std::size_t(task.index), observed);
+                body(std::size_t(share.index), observed);
             } else {
-                body(std::size_t(task.index), writer);
+                body(std::size_t(share.index), writer);
             }
-            output_.end(task);
+            output_.end(share);
         });
     }
     BuildPlace build_place(std::size_t entries) override {
@@ -179,7 +179,7 @@ private:
     std::optional<BuildExecutor> build_;  // builds the current nested octree
 };
 
-void WorkerProgram::run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop) {
+void PassRunner::run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop) {
     Slot& slot = view_.slot(self.slot);
     WorkSharing shares(view_, self, stop);
     const Context context{pass, shares, stop, slot};
@@ -204,7 +204,7 @@ void WorkerProgram::run(const Pass& pass, const WorkSharing::Self& self, std::st
     slot.preparing.store(0);
 }
 
-Outcome WorkerProgram::take_part(const Context& context) {
+Outcome PassRunner::take_part(const Context& context) {
     if (job_ == nullptr || job_->number != context.pass.job) start_job(context.pass);
     build(context);
     scan(context);
@@ -212,14 +212,14 @@ Outcome WorkerProgram::take_part(const Context& context) {
     return Outcome::done;
 }
 
-void WorkerProgram::forget_job() { job_ = nullptr; }
+void PassRunner::forget_job() { job_ = nullptr; }
 
-void WorkerProgram::start_job(const Pass& pass) {
+void PassRunner::start_job(const Pass& pass) {
     job_ = nullptr;
     job_ = std::make_unique<Job>(pass, regions_);
 }
 
-void WorkerProgram::build(const Context& context) {
+void PassRunner::build(const Context& context) {
     if (!job_->built) {
         BuildExecutor executor(context.shares, context.pass.workers, context.pass.built != 0);
         const ObservedSource source(job_->source, context.shares.observer());
@@ -233,7 +233,7 @@ void WorkerProgram::build(const Context& context) {
     context.slot.scatter_seconds = job_->octree.seconds().scatter;
 }
 
-void WorkerProgram::scan(const Context& context) {
+void PassRunner::scan(const Context& context) {
     job_->arena.rewind(job_->built_mark);
     const Pass& pass = context.pass;
     context.slot.scan_seconds = 0;
@@ -258,18 +258,19 @@ void WorkerProgram::scan(const Context& context) {
     throw Error(ErrorCode::engine_failed, "control block: the kind of the pass is unknown");
 }
 
-void WorkerProgram::scan_into(const Context& context, ShareOutput& output) {
+void PassRunner::scan_into(const Context& context, ShareOutput& output) {
     ScanExecutor executor(context.shares, context.pass.workers, output, job_->arena);
     octopair::scan(job_->octree, {job_->source, context.stop, scan_memory_}, executor,
                    [&](std::uint64_t entries) { context.slot.entries_scanned.fetch_add(entries); });
 }
 
-void WorkerProgram::count_by_object(const Context& context) {
+void PassRunner::count_by_object(const Context& context) {
     Buffer<std::uint32_t> counts(job_->arena);
     counts.resize_discard(job_->source.size());
     const std::uint64_t blocks = context.pass.workers;
-    context.shares.run(Step::scan, blocks, [&](const WorkSharing::Task& task) {
-        const std::size_t begin = counts.size() * task.index / blocks, end = counts.size() * (task.index + 1) / blocks;
+    context.shares.run(Step::scan, blocks, [&](const WorkSharing::ClaimedShare& share) {
+        const std::size_t begin = counts.size() * share.index / blocks,
+                          end = counts.size() * (share.index + 1) / blocks;
         std::fill(counts.data() + begin, counts.data() + end, 0u);
     });
     context.slot.number = job_->arena.offset(counts.data());

@@ -1,4 +1,4 @@
-// WorkerProgram: the work of one worker in a pass. All workers of a pass run the same program concurrently.
+// PassRunner: the work of one worker in a pass. All workers of a pass run the same program concurrently.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <stop_token>
 
 #include "boxes/box_source.hpp"
-#include "engine/processes/shared_memory/arena.hpp"
+#include "engine/processes/shared_memory/shared_memory.hpp"
 #include "engine/processes/worker/share_output.hpp"
 #include "engine/processes/worker/work_sharing.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
@@ -16,11 +16,11 @@
 namespace octopair {
 
 /// Keeps the octree between the passes of a job. Thread safety: one thread at a time.
-class WorkerProgram {
+class PassRunner {
 public:
     /// Requires: `view` and `regions` outlive this object.
-    WorkerProgram(ControlBlockView& view, WorkerRegions& regions);
-    ~WorkerProgram();
+    PassRunner(ControlBlockView& view, WorkerRegions& regions);
+    ~PassRunner();
 
     /// Runs this worker's part of the pass and stores the outcome in its slot.
     void run(const Pass& pass, const WorkSharing::Self& self, std::stop_token stop);
