@@ -1,232 +1,91 @@
 #include "narrow_phase/object_pair.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "base/test_hooks.hpp"
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/convex_pair.hpp"
-#include "narrow_phase/depth_bounds.hpp"
-#include "narrow_phase/duplicates.hpp"
-#include "narrow_phase/mesh/mesh_contacts.hpp"
-#include "narrow_phase/mesh/mesh_convex.hpp"
-#include "narrow_phase/mesh/mesh_pair.hpp"
-#include "narrow_phase/mesh/mesh_plane.hpp"
-#include "narrow_phase/mesh/mesh_solid_contacts.hpp"
-#include "narrow_phase/object_kind.hpp"
+#include "narrow_phase/pair_kinds.hpp"
 
 namespace octopair {
 
 namespace {
 
-/// Distance of two objects, the common form of SurfaceGap and ConvexGap.
-struct Distance {
-    double distance = 0, at_least = 0;  ///< see ConvexGap
-    std::array<Point3d, 2> nearest = {};
-};
-std::optional<Distance> from(const std::optional<SurfaceGap>& gap) {
-    if (!gap) return std::nullopt;
-    return Distance{gap->distance, gap->distance, gap->nearest};
-}
-std::optional<Distance> from(const std::optional<ConvexGap>& gap) {
-    if (!gap) return std::nullopt;
-    return Distance{gap->distance, gap->at_least, {gap->on_a, gap->on_b}};
+bool are_near(const Point3d& a, const Point3d& b, double tolerance) {
+    return a == b || vector::length(vector::minus(a, b)) <= tolerance;
 }
 
-/// Returns a bound on the rounding of a depth, as a fraction of the smaller object's size. A depth of convex solids that is no larger
-/// counts as touching.
-double rounding_of(const PosedObject& a, const PosedObject& b) {
-    const auto size = [](const PosedObject& object) {
-        const ShapeBounds& bounds = object.geometry.bounds;
-        return bounds.bounded ? bounds.radius : std::numeric_limits<double>::infinity();
-    };
-    return std::min(size(a), size(b)) * 1e-12;
-}
-
-/// Returns the largest error of a depth that counts as the least: a millionth of the smaller object's size.
-double max_error(double rounding) { return 1e6 * rounding; }
-
-Contact from(const ConvexContact& contact) { return {contact.point, contact.normal, contact.depth}; }
-
-/// Sets the depth and the single contact of a pair for which one contact is sufficient.
-void set_contact(const Contact& contact, std::uint32_t max_contacts, Finding& finding) {
-    finding.depth = contact.depth;
-    finding.depth_kind = DepthKind::least;
-    finding.more_contacts = max_contacts == 0;
-    if (max_contacts > 0) finding.contacts = {contact};
-}
-
-/// Sets the class according to the depth. A depth that is within rounding becomes 0.
-void set_class(double rounding, Finding& finding) {
-    const bool touches = finding.depth <= rounding || planted(Fault::overlap_called_touching);
-    finding.collision_class = touches ? CollisionClass::touching : CollisionClass::penetrating;
-    if (!touches) return;
-    finding.depth = 0;
-    finding.depth_kind = DepthKind::least;
-}
-
-/// Class of two objects that meet, contained or collision; nothing if they do not meet.
-using Meeting = std::optional<CollisionClass>;
-
-Meeting collision_if(bool meet) { return meet ? Meeting(CollisionClass::collision) : std::nullopt; }
-Meeting contained_or_collision(bool contained) {
-    return contained ? CollisionClass::contained : CollisionClass::collision;
-}
-
-Pose moved(Pose pose, const Point3d& by) {
-    for (std::size_t axis = 0; axis < 3; ++axis) pose.rows[axis][3] += by[axis];
-    return pose;
-}
-
-// Kinds of pairs. Each has the same functions: meeting(), gap(), find_contacts(), set_contained_depth(), is_separated_by(),
-// overlap_along(). A mesh comes first in its pair, a plane last. is_separated_by(motion): whether the objects do not penetrate if b
-// is moved.
-
-struct TwoMeshes {
-    PosedMesh a, b;
-    double rounding;
-
-    Meeting meeting() const {
-        if (surfaces_meet(a, b)) return CollisionClass::collision;
-        if (!encloses_part(a, b) && !encloses_part(b, a)) return std::nullopt;
-        return contained_or_collision(contains_mesh(a, b) || contains_mesh(b, a));
-    }
-    std::optional<Distance> gap(double most) const { return from(surface_gap(a, b, most)); }
-    void find_contacts(const ContactRequest& request, Finding& finding) const {
-        ContactRequest with_error = request;
-        with_error.max_error = max_error(rounding);
-        find_mesh_contacts(a, b, with_error, finding);
-    }
-    void set_contained_depth(const std::stop_token& stop, Finding& finding) const {
-        set_depth_of_meshes(a, b, {.max_contacts = 0, .stop = stop, .max_error = max_error(rounding)}, finding);
-    }
-    bool is_separated_by(const Point3d& motion, const std::stop_token& stop) const {
-        const Pose there = moved(b.pose, motion);
-        return !meshes_penetrate(a, {b.tree, there}, stop);
-    }
-    double overlap_along(const Point3d& direction) const { return octopair::overlap_along(direction, a, b); }
+/// Points in the shape's own coordinates, and the pose that places them.
+struct PosedPoints {
+    const std::vector<Point3d>& points;
+    const Pose& pose;
 };
 
-struct TwoSolids {
-    PosedConvex a, b;
-    double rounding;
+bool are_near(const PosedPoints& a, const PosedPoints& b, double tolerance) {
+    if (a.points.size() != b.points.size()) return false;
+    for (std::size_t i = 0; i < a.points.size(); ++i) {
+        if (!are_near(vector::posed(a.pose, a.points[i]), vector::posed(b.pose, b.points[i]), tolerance)) return false;
+    }
+    return true;
+}
 
-    Meeting meeting() const {
-        if (!convex_meet(a, b)) return std::nullopt;
-        return contained_or_collision(convex_contains(a, b) || convex_contains(b, a));
+std::vector<Point3d> corners_of(const Box3d& box) {
+    std::vector<Point3d> corners;
+    for (unsigned i = 0; i < 8; ++i) {
+        Point3d corner;
+        for (unsigned axis = 0; axis < 3; ++axis) corner[axis] = (i >> axis & 1u) != 0 ? box.max[axis] : box.min[axis];
+        corners.push_back(corner);
     }
-    std::optional<Distance> gap(double) const { return from(std::optional(convex_gap(a, b))); }
-    void find_contacts(const ContactRequest& request, Finding& finding) const {
-        const ConvexContact contact = convex_contact(a, b);
-        set_contact(from(contact), request.max_contacts, finding);
-        set_class(rounding, finding);
-    }
-    void set_contained_depth(const std::stop_token&, Finding& finding) const {
-        finding.depth = convex_contact(a, b).depth;
-        finding.depth_kind = DepthKind::least;
-    }
-    // The depth is the least, so these are not needed.
-    static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
-    static double overlap_along(const Point3d&) { return 0; }
-};
+    return corners;
+}
 
-struct MeshAndSolid {
-    PosedMesh mesh;
-    BoxedSolid solid;
-    double rounding;
+bool same_parameters(const ConvexSolid& a, const ConvexSolid& b) {
+    return a.core == b.core && a.extents == b.extents && a.radius == b.radius && a.points.size() == b.points.size();
+}
 
-    Meeting meeting() const {
-        if (surface_meets(mesh, solid)) return contained_or_collision(contains_mesh(solid, mesh));
-        return encloses_solid(mesh, solid) ? Meeting(CollisionClass::contained) : std::nullopt;
+/// Returns true if the objects have the same kind of shape and equal sizes, and meshes equal triangles, and if no corner is further
+/// than `tolerance` from its counterpart. For curved shapes the corners are those of their box. A shape that a symmetry maps to
+/// itself is the same only in the same position.
+bool are_duplicates(const PosedObject& a, const PosedObject& b, double tolerance) {
+    const shape::Any &first = a.geometry.shape, &second = b.geometry.shape;
+    if (first.index() != second.index() || std::holds_alternative<shape::Plane>(first)) return false;
+    if (const auto* mesh = std::get_if<shape::Mesh>(&first)) {
+        const auto& other = std::get<shape::Mesh>(second);
+        // Places first: those of different objects differ at the first vertex.
+        return are_near(PosedPoints{mesh->vertices, a.pose}, {other.vertices, b.pose}, tolerance) &&
+               (mesh == &other || mesh->triangles == other.triangles);
     }
-    std::optional<Distance> gap(double most) const { return from(surface_gap(mesh, solid, most)); }
-    void find_contacts(const ContactRequest& request, Finding& finding) const {
-        find_mesh_solid_contacts(mesh, solid, {request.max_contacts, rounding, max_error(rounding), request.stop},
-                                 finding);
-        set_class(rounding, finding);
+    if (!same_parameters(a.geometry.convex, b.geometry.convex)) return false;
+    if (std::holds_alternative<shape::ConvexHull>(first)) {
+        return are_near(PosedPoints{a.geometry.convex.points, a.pose}, {b.geometry.convex.points, b.pose}, tolerance);
     }
-    void set_contained_depth(const std::stop_token&, Finding& finding) const {
-        set_depth_of_mesh_and_solid(mesh, solid, max_error(rounding), finding);
-    }
-    bool is_separated_by(const Point3d& motion, const std::stop_token& stop) const {
-        const Pose there = moved(solid.box.pose, motion);
-        const MeshAndSolid pair{mesh, {solid.solid, {solid.box.tree, there}}, rounding};
-        const Meeting at = pair.meeting();
-        if (at != CollisionClass::collision) return !at;
-        Finding finding;
-        pair.find_contacts({0, stop}, finding);
-        return finding.collision_class == CollisionClass::touching;
-    }
-    double overlap_along(const Point3d& direction) const { return octopair::overlap_along(direction, mesh, solid); }
-};
+    return are_near(PosedPoints{corners_of(a.geometry.bounds.box), a.pose}, {corners_of(b.geometry.bounds.box), b.pose},
+                    tolerance);
+}
 
-struct SolidAndPlane {
-    PosedConvex solid;
-    PosedPlane plane;
-    double rounding;
-
-    PlaneSpan span() const { return span_across(plane, solid); }
-    Meeting meeting() const { return collision_if(meets(span())); }
-    std::optional<Distance> gap(double) const {
-        auto found = from(std::optional(plane_gap(plane, span())));
-        std::swap(found->nearest[0], found->nearest[1]);
-        return found;
+/// Returns directions along which a motion of b may separate two objects: the different normals of the first 16 contacts, and the
+/// axes in both senses.
+std::vector<Point3d> directions_out(std::span<const Contact> contacts) {
+    constexpr std::size_t most = 16;
+    std::vector<Point3d> directions;
+    for (const Contact& contact : contacts.first(std::min(most, contacts.size()))) {
+        const bool known = std::any_of(directions.begin(), directions.end(), [&](const Point3d& direction) {
+            return vector::dot(direction, contact.normal) > 1 - 1e-9;
+        });
+        if (!known) directions.push_back(contact.normal);
     }
-    void find_contacts(const ContactRequest& request, Finding& finding) const {
-        set_plane_contact(plane, span(), request.max_contacts, finding);
-        set_class(rounding, finding);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const double sense : {1.0, -1.0}) {
+            Point3d direction = {};
+            direction[axis] = sense;
+            directions.push_back(direction);
+        }
     }
-    static void set_contained_depth(const std::stop_token&, Finding&) {}
-    // The depth is the least, so these are not needed.
-    static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
-    static double overlap_along(const Point3d&) { return 0; }
-
-    static void set_plane_contact(const PosedPlane& plane, const PlaneSpan& span, std::uint32_t max_contacts,
-                                  Finding& finding) {
-        Contact contact = from(plane_contact(plane, span));
-        contact.normal = vector::times(contact.normal, -1);
-        set_contact(contact, max_contacts, finding);
-    }
-};
-
-struct MeshAndPlane {
-    PosedMesh mesh;
-    PosedPlane plane;
-    double rounding;
-
-    Meeting meeting() const { return collision_if(surface_meets(mesh, plane)); }
-    std::optional<Distance> gap(double) const {
-        auto found = from(plane_gap(plane, mesh));
-        if (found) std::swap(found->nearest[0], found->nearest[1]);
-        return found;
-    }
-    void find_contacts(const ContactRequest& request, Finding& finding) const {
-        SolidAndPlane::set_plane_contact(plane, *span_across(plane, mesh), request.max_contacts, finding);
-        set_class(rounding, finding);
-    }
-    static void set_contained_depth(const std::stop_token&, Finding&) {}
-    // The depth is the least, so these are not needed.
-    static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
-    static double overlap_along(const Point3d&) { return 0; }
-};
-
-/// Returns judge(pair), where pair is one of the kinds above; `of_planes` for two planes.
-/// Requires: the kind of `first` is not after the kind of `second`.
-template <typename Result, typename Judge>
-Result with_kind(const PosedObject& first, const PosedObject& second, Result of_planes, const Judge& judge) {
-    const double rounding = rounding_of(first, second);
-    const Kind a = kind_of(first), b = kind_of(second);
-    if (a == Kind::mesh && b == Kind::mesh) return judge(TwoMeshes{mesh_of(first), mesh_of(second), rounding});
-    if (a == Kind::mesh && b == Kind::solid)
-        return judge(MeshAndSolid{mesh_of(first), boxed_solid_of(second), rounding});
-    if (a == Kind::mesh) return judge(MeshAndPlane{mesh_of(first), plane_of(second), rounding});
-    if (b == Kind::solid) return judge(TwoSolids{solid_of(first), solid_of(second), rounding});
-    if (a == Kind::solid) return judge(SolidAndPlane{solid_of(first), plane_of(second), rounding});
-    return of_planes;
+    return directions;
 }
 
 /// Returns `reach`, enlarged so that a distance equal to `reach` up to rounding counts.
@@ -296,7 +155,7 @@ bool judge_pair(const Pair& pair, double reach, Finding& finding) {
     }
     if (!(reach > 0)) return false;
     const double most = room_for_rounding(reach);
-    const std::optional<Distance> gap = pair.gap(most);
+    const std::optional<ObjectDistance> gap = pair.gap(most);
     if (!gap || gap->at_least > most) return false;
     finding.collision_class = CollisionClass::clearance;
     finding.distance = gap->distance;
@@ -320,7 +179,7 @@ std::optional<ObjectGap> object_gap(const PosedObject& a, const PosedObject& b) 
     using Answer = std::optional<ObjectGap>;
     Answer gap = with_kind(in_order ? a : b, in_order ? b : a, Answer(), [&](const auto& pair) -> Answer {
         if (pair.meeting()) return ObjectGap();
-        const std::optional<Distance> found = pair.gap(any);
+        const std::optional<ObjectDistance> found = pair.gap(any);
         if (!found) return std::nullopt;
         return ObjectGap{found->at_least, found->nearest};
     });

@@ -15,8 +15,8 @@
 
 #include "base/floating_point_scope.hpp"
 #include "geometry/rounding.hpp"
-#include "narrow_phase/convex/posed_plane.hpp"
 #include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/plane_pair.hpp"
 #include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 

@@ -11,12 +11,12 @@
 #include <optional>
 
 #include "base/floating_point_scope.hpp"
-#include "narrow_phase/convex/posed_plane.hpp"
 #include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/plane_pair.hpp"
 #include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
-#include "pipeline/second_set.hpp"
+#include "pipeline/per_object.hpp"
 
 namespace octopair {
 namespace {

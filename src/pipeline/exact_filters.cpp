@@ -10,12 +10,12 @@
 #include "base/floating_point_scope.hpp"
 #include "geometry/vector.hpp"
 #include "narrow_phase/mesh/mesh_tree.hpp"
-#include "narrow_phase/motion/object_impact.hpp"
+#include "narrow_phase/motion/time_of_impact.hpp"
 #include "narrow_phase/object_pair.hpp"
 #include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
-#include "pipeline/second_set.hpp"
+#include "pipeline/per_object.hpp"
 
 namespace octopair {
 

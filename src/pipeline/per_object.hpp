@@ -1,4 +1,4 @@
-// PerObject: one value for each object of the two sets of a join, or of the one set of a call.
+// PerObject: one value for each object of the two sets of a join, or of the one set of a call. in_second_set(): places errors.
 //
 // A pair with an object that has no value is an error: the filter got values for other objects than the engine.
 #pragma once
@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "octopair/error.hpp"
 #include "octopair/objects.hpp"
@@ -44,5 +45,19 @@ private:
     std::span<const Value> first_, second_;
     bool in_join_;
 };
+
+/// Calls `check`, which checks the objects of a second set. An error about one of them gets the set 1 (Error::place()).
+/// Throws: what `check` throws.
+template <typename Check>
+void in_second_set(Check&& check) {
+    try {
+        std::forward<Check>(check)();
+    } catch (const Error& error) {
+        auto place = error.place();
+        if (!place) throw;
+        place->set = 1;
+        throw PlacedError(error.code(), error.what(), *place);
+    }
+}
 
 }  // namespace octopair

@@ -13,14 +13,12 @@
 #include "base/floating_point_scope.hpp"
 #include "boxes/box_kernel.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
-#include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/exact/triangle_prefilter.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"
 #include "parallel/team.hpp"
 #include "pipeline/per_object.hpp"
-#include "pipeline/second_set.hpp"
 
 namespace octopair {
 

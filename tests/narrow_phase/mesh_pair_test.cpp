@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/mesh/mesh_walk.hpp"
 #include "samples/meshes.hpp"

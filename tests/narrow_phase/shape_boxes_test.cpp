@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "narrow_phase/convex/convex_plane.hpp"
 #include "narrow_phase/convex_oracle.hpp"
 #include "narrow_phase/motion/motion.hpp"
+#include "narrow_phase/plane_pair.hpp"
 #include "narrow_phase/prepared.hpp"
 #include "octopair/error.hpp"
 #include "samples/meshes.hpp"

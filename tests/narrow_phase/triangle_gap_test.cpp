@@ -1,5 +1,4 @@
 // Tests the distance of triangles, and the place, kind and depth of their contacts.
-#include "narrow_phase/exact/triangle_gap.hpp"
 
 #include <gtest/gtest.h>
 

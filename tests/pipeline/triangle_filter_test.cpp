@@ -9,7 +9,6 @@
 
 #include "boxes/box_kernel.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
-#include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"
 #include "octopair/filters.hpp"

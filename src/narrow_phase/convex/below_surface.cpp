@@ -1,9 +1,12 @@
 // Ellipsoid The surface of each solid consists of planes, and of places where a quadratic function is 0. Its greatest value in the
-//           ellipsoid is known (ball_maximum.hpp). So the answer is proven, up to rounding.
+//           ellipsoid is known (greatest_on_ball()). So the answer is proven, up to rounding.
 // Capsule   Between its ends it is a cylinder, beyond them a ball. The part of the ellipsoid beyond an end is divided into slabs until
 //           the greatest distance in each is proven. Without a proof after many slabs, the ellipsoid counts as not below.
 #include "narrow_phase/convex/below_surface.hpp"
 
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -11,10 +14,63 @@
 #include <vector>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/ball_maximum.hpp"
 
 namespace octopair {
 namespace {
+
+/// The function y -> y' square y + 2 linear' y + constant. The matrix is symmetric.
+struct Quadratic {
+    Eigen::Matrix3d square;
+    Eigen::Vector3d linear;
+    double constant;
+};
+
+using Vector = Eigen::Vector3d;
+
+constexpr double unit_roundoff = std::numeric_limits<double>::epsilon();
+
+/// Returns the least m between two bounds for which the concave function has its greatest value in the ball: |y(m)| <= 1.
+double least_multiplier(const Vector& eigenvalues, const Vector& linear, double below, double above) {
+    const auto is_in_ball = [&](double m) {
+        return (linear.array() / (m - eigenvalues.array())).matrix().squaredNorm() <= 1;
+    };
+    for (int step = 0; step < 60; ++step) {
+        const double middle = below + (above - below) / 2;
+        if (!(middle > below && middle < above)) break;
+        (is_in_ball(middle) ? above : below) = middle;
+    }
+    return above;
+}
+
+/// Returns |offset + map y|^2 as a function of y.
+Quadratic squared_length(const Vector& offset, const Eigen::Matrix3d& map) {
+    return {map.transpose() * map, map.transpose() * offset, offset.squaredNorm()};
+}
+
+/// Returns (offset + along' y)^2 as a function of y.
+Quadratic squared(double offset, const Vector& along) {
+    return {along * along.transpose(), along * offset, offset * offset};
+}
+
+/// Returns a number that the function exceeds nowhere in the unit ball. It is the greatest value itself, up to rounding.
+/// Requires: no intermediate result overflows.
+///
+/// For any number m above 0 and above all eigenvalues of the matrix, f(y) <= f(y) + m (1 - y'y) in the ball, and the right side is
+/// concave, so its greatest value is known. The least of these bounds is the greatest value of f, also if f is neither convex nor
+/// concave (S-lemma).
+/// Source: Polik, Terlaky: A survey of the S-lemma, SIAM Review 49 (2007).
+double greatest_on_ball(const Quadratic& function) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(function.square);
+    const Vector& eigenvalues = solver.eigenvalues();
+    const Vector linear = solver.eigenvectors().transpose() * function.linear;
+    const double size = eigenvalues.cwiseAbs().maxCoeff() + linear.norm() + std::fabs(function.constant);
+    // Eigenvalues err by a few roundings of the largest one, so the multiplier stays so far above them.
+    const double least =
+        std::max(eigenvalues.maxCoeff(), 0.0) + 16 * unit_roundoff * size + std::numeric_limits<double>::min();
+    const double m = least_multiplier(eigenvalues, linear, least, least + linear.norm());
+    const Vector parts = linear.array().square() / (m - eigenvalues.array());
+    return function.constant + m + parts.sum() + 64 * unit_roundoff * size;
+}
 
 using Core = ConvexSolid::Core;
 

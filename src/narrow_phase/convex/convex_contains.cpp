@@ -13,7 +13,6 @@
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/below_surface.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
-#include "narrow_phase/convex/scaled_pair.hpp"
 
 namespace octopair {
 namespace {

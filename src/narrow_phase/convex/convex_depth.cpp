@@ -3,18 +3,19 @@
 // Depth     The overlap along any direction, computed from two supports, is a depth that separates the objects. The depth is
 //           the least overlap.
 // Apart     If the cores do not meet, its direction is the one that proves their distance.
-// Meeting   If they meet, an expanding polytope finds it (difference_hull.hpp).
+// Meeting   If they meet, an expanding polytope finds it (find_least_overlap()).
 // Near      A small depth may be the error of its direction, which matters at the far points of a large object. Then the exact directions of
-//           faces and edges are tried, too (face_directions.hpp).
+//           faces and edges are tried, too (propose_face_directions()).
 // Safety    If rounding misleads the search, the depth is larger than necessary, but the contact separates the objects.
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/difference_hull.hpp"
-#include "narrow_phase/convex/face_directions.hpp"
 #include "narrow_phase/convex/least_overlap.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
-#include "narrow_phase/convex/scaled_pair.hpp"
 
 namespace octopair {
 namespace {
@@ -33,6 +34,121 @@ Point3d point_in_both(const LocalConvexPair& pair, const CoreGap& core) {
     if (!(length > 0)) return core.on_a;
     const double begin = std::max(0.0, length - pair.b().radius()), end = std::min(length, pair.a().radius());
     return vector::plus(core.on_a, vector::times(way, (begin + end) / 2 / length));
+}
+
+using vector::cross;
+using vector::dot;
+using vector::minus;
+using vector::plus;
+using vector::times;
+
+/// Up to six points of a core that are farthest along directions near a given one. Equal points are stored once.
+class NearPoints {
+public:
+    /// `direction` has length 1.
+    NearPoints(const LocalConvex& convex, const Point3d& direction) {
+        if (!convex.points().empty()) {
+            for (const Point3d& point : convex.points()) add(point);
+            return;
+        }
+        constexpr double aside = 1e-5;
+        const auto add_toward = [&](const Point3d& way) {
+            const double length = vector::length(way);
+            if (length > 0) add(convex.support(plus(direction, times(way, aside / length))));
+        };
+        const Point3d first = vector::some_normal(direction), second = cross(direction, first);
+        for (const Point3d& way : {first, second}) add_toward(way), add_toward(times(way, -1));
+        // The third corner of a triangle may be farthest only along directions that are perpendicular to the longest edge.
+        const Point3d edge = longest_edge(), across = cross(direction, edge);
+        add_toward(across), add_toward(times(across, -1));
+    }
+
+    std::span<const Point3d> points() const { return {points_.data(), count_}; }
+
+private:
+    void add(const Point3d& point) {
+        const auto end = points_.begin() + std::ptrdiff_t(count_);
+        if (std::find(points_.begin(), end, point) == end) points_[count_++] = point;
+    }
+    Point3d longest_edge() const {
+        Point3d longest = {};
+        for (std::size_t i = 0; i < count_; ++i) {
+            for (std::size_t k = 0; k < i; ++k) {
+                const Point3d edge = minus(points_[i], points_[k]);
+                if (dot(edge, edge) > dot(longest, longest)) longest = edge;
+            }
+        }
+        return longest;
+    }
+
+    std::array<Point3d, 6> points_ = {};
+    std::size_t count_ = 0;
+};
+
+/// Normals of the faces and directions of the edges of a core near a direction, of any length.
+struct NearFeatures {
+    std::array<Point3d, 20> normals = {};
+    std::array<Point3d, 15> edges = {};
+    std::size_t normal_count = 0, edge_count = 0;
+
+    NearFeatures(const LocalConvex& convex, const Point3d& direction) {
+        if (!convex.is_points()) {
+            for (std::size_t axis = 0; axis < 3; ++axis) add_axis(vector::column(convex.pose(), axis));
+            return;
+        }
+        const NearPoints near(convex, direction);
+        const auto points = near.points();
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const Point3d edge = minus(points[j], points[i]);
+                edges[edge_count++] = edge;
+                for (std::size_t k = 0; k < j; ++k) normals[normal_count++] = cross(edge, minus(points[k], points[i]));
+            }
+        }
+    }
+
+private:
+    void add_axis(const Point3d& axis) { normals[normal_count++] = axis, edges[edge_count++] = axis; }
+};
+
+/// Returns the part of `direction` that is perpendicular to `edge`. The second step removes the rounding of the first one.
+Point3d turned_across(const Point3d& edge, Point3d direction) {
+    for (int step = 0; step < 2; ++step) {
+        direction = minus(direction, times(edge, dot(direction, edge) / dot(edge, edge)));
+    }
+    return direction;
+}
+
+/// Proposes directions near least.normal() until the overlap of the cores is at most `enough`. The directions are exact where plane faces
+/// and straight edges touch.
+/// Requires: a direction has been tried, and the sizes of the pair need no scaling (ScaledPair).
+///
+/// Use       A search ends when the bounds of the distance agree to the rounding of the pair's size. A direction is then accurate to about
+///           this rounding, divided by the size. At the far points of a large face this still is much for a small object on it. The normal
+///           of the face itself has no such error.
+/// Proposed  The normals of near faces of either core, the cross products of near edges of both, and the best direction made perpendicular
+///           to each near edge. Of a core that is no set of points, the axes of its pose stand for normals and edges.
+/// Safety    Any direction is an upper bound of the least overlap. So a useless proposal only costs time.
+void propose_face_directions(const LocalConvexPair& pair, double enough, LeastOverlap& least) {
+    const Point3d direction = least.normal();
+    const NearFeatures a(pair.a(), direction), b(pair.b(), times(direction, -1));
+    const auto is_enough = [&](const Point3d& proposal) {
+        least.propose(proposal);
+        return least.overlap() <= enough;
+    };
+    for (const NearFeatures* one : {&a, &b}) {
+        for (std::size_t i = 0; i < one->normal_count; ++i) {
+            if (is_enough(one->normals[i])) return;
+        }
+        for (std::size_t i = 0; i < one->edge_count; ++i) {
+            if (is_enough(turned_across(one->edges[i], direction))) return;
+        }
+    }
+    for (std::size_t i = 0; i < a.edge_count; ++i) {
+        for (std::size_t k = 0; k < b.edge_count; ++k) {
+            if (is_enough(cross(a.edges[i], b.edges[k]))) return;
+        }
+    }
 }
 
 /// Tries further directions if the depth is so small that it may be the error of the best direction.

@@ -5,7 +5,6 @@
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/convex/local_convex.hpp"
-#include "narrow_phase/convex/scaled_pair.hpp"
 
 namespace octopair {
 

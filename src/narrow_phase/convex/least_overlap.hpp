@@ -121,4 +121,10 @@ private:
     Point3d normal_ = {1, 0, 0};
 };
 
+/// Tries directions with `least` until the least overlap is found to `slack` or a relative 1e-10, or, of pairs with very many
+/// directions of nearly least overlap, until the search gives up; the overlap is then right to the second order of the
+/// distance to the best direction. Returns a proven lower bound on the least overlap, or minus infinity for a difference without
+/// volume. `slack`: rounding error of a point of the difference.
+double find_least_overlap(LeastOverlap& least, double slack);
+
 }  // namespace octopair

@@ -1,4 +1,4 @@
-// LocalConvexPair: two convex objects in local coordinates near the smaller of them.
+// LocalConvexPair: two convex objects in local coordinates near the smaller of them. ScaledPair: the same in suitable units.
 //
 // Origin    A point of the smaller object: its first corner, its first point or its centre. The axes are those of the world.
 // Order     a() is the larger object and b() the smaller one, whichever the caller passes first (see swapped()).
@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -82,5 +83,35 @@ struct CoreGap {
 /// Returns the distance of the two cores. With `enough`, the search ends once the bounds decide whether the distance is
 /// larger than `enough`.
 CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough = {});
+
+/// Two convex objects in units in which their numbers have about the size 1. The functions of pairs multiply up to four lengths. So they
+/// first scale a pair whose size is beyond 2^200 or below 2^-200. The unit is a power of two, so scaling rounds nothing (but the parts of
+/// an object that are 2^800 times smaller than the pair).
+class ScaledPair {
+public:
+    /// Returns true if the functions of pairs must scale a pair of this size.
+    static bool is_needed(const LocalConvexPair& pair) {
+        const double size = pair.size();
+        return size > 0 && !(size >= 0x1p-200 && size <= 0x1p200);
+    }
+
+    /// Copies the numbers of both objects.
+    ScaledPair(const PosedConvex& a, const PosedConvex& b, const LocalConvexPair& pair);
+    ~ScaledPair();
+    ScaledPair(const ScaledPair&) = delete;
+    ScaledPair& operator=(const ScaledPair&) = delete;
+
+    const PosedConvex& a() const;
+    const PosedConvex& b() const;
+    double to_units(double length) const;
+    double from_units(double length) const;
+    Point3d from_units(const Point3d& point) const;
+
+private:
+    struct Scaled;
+
+    int exponent_;
+    std::unique_ptr<const Scaled> a_, b_;
+};
 
 }  // namespace octopair

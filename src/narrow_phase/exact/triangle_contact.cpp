@@ -6,7 +6,6 @@
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/exact/centered_triangles.hpp"
-#include "narrow_phase/exact/crossing_part.hpp"
 #include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/exact/plane_crossing.hpp"
 #include "narrow_phase/exact/ray_parity.hpp"

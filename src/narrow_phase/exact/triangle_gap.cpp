@@ -3,7 +3,7 @@
 // Cases     Two edges, a corner and an edge, or a corner and the interior of the other triangle. All cases are tried.
 // Safety    Each candidate is a point of its triangle, whatever the rounding of its parameters. So no distance is too small.
 // Accuracy  If one candidate is imprecise (almost parallel edges, slivers), another candidate is as near.
-#include "narrow_phase/exact/triangle_gap.hpp"
+#include "narrow_phase/exact/triangle_pair.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@
 #include "geometry/vector.hpp"
 #include "narrow_phase/exact/centered_triangles.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
-#include "narrow_phase/exact/triangle_pair.hpp"
 
 namespace octopair {
 namespace {

@@ -1,3 +1,12 @@
+// Contacts of two meshes that meet: class, depth and contacts.
+//
+// Class     Penetrating if two triangles pass through each other, or if the interiors meet (mesh_interiors.cpp); otherwise
+//           touching. Exact.
+// Depth     Of two convex meshes the least translation that separates them. Of others a lower bound: the largest distance
+//           from a sample inside the other mesh to the other's surface, or the depth of the deepest contact.
+// Samples   Corners and centroids of the triangles of one mesh, and the centre of its bounding box if it is inside the mesh.
+// Contacts  One for each pair of triangles that meet: the mean of their common points, with the normal and the depth of
+//           these two triangles alone. Sorted by descending depth, then by the numbers of the triangles.
 #include "narrow_phase/mesh/mesh_contacts.hpp"
 
 #include <algorithm>
@@ -9,7 +18,6 @@
 #include "narrow_phase/convex/convex_pair.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/mesh/deepest_contacts.hpp"
-#include "narrow_phase/mesh/mesh_interiors.hpp"
 #include "narrow_phase/mesh/mesh_leaves.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"

@@ -1,17 +1,12 @@
-// Contacts of two meshes that meet: class, depth and contacts.
-//
-// Class     Penetrating if two triangles pass through each other, or if the interiors meet (mesh_interiors.hpp); otherwise
-//           touching. Exact.
-// Depth     Of two convex meshes the least translation that separates them. Of others a lower bound: the largest distance
-//           from a sample inside the other mesh to the other's surface, or the depth of the deepest contact.
-// Samples   Corners and centroids of the triangles of one mesh, and the centre of its bounding box if it is inside the mesh.
-// Contacts  One for each pair of triangles that meet: the mean of their common points, with the normal and the depth of
-//           these two triangles alone. Sorted by descending depth, then by the numbers of the triangles.
+// Contacts of meshes that meet another mesh (mesh_contacts.cpp, mesh_interiors.cpp) or a convex solid (mesh_solid_contacts.cpp): class,
+// depth and contacts.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <stop_token>
 
+#include "narrow_phase/mesh/mesh_convex.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "octopair/collision.hpp"
 
@@ -33,9 +28,34 @@ void find_mesh_contacts(const PosedMesh& a, const PosedMesh& b, const ContactReq
 /// Returns true if the interiors of two meshes meet, or their surfaces pass through each other.
 bool meshes_penetrate(const PosedMesh& a, const PosedMesh& b, const std::stop_token& stop);
 
+/// Two triangles that touch, by their places in the trees' order.
+struct TouchingTriangles {
+    std::uint32_t a, b;
+};
+
+/// Returns true if the interior of one mesh has points in common with the surface or the interior of the other; points on both
+/// surfaces do not count. After a stop request the result is unspecified.
+/// Requires: `touching` has all pairs of triangles that meet, and no two triangles pass through each other.
+bool interiors_meet(const PosedMesh& a, const PosedMesh& b, std::span<const TouchingTriangles> touching,
+                    const std::stop_token& stop);
+
 /// Sets depth and depth_kind: the least separating translation of two convex meshes (MeshTree::solid); otherwise the depth of
 /// the deepest sample of either mesh inside the other, a lower bound, or 0 if no sample is inside.
 /// Requires: the interiors of the meshes meet.
 void set_depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding);
+
+struct MeshSolidRequest {
+    std::uint32_t max_contacts;   ///< maximum number of contacts in the result
+    double touching_depth;        ///< a contact that is at most this deep only touches
+    double max_error;             ///< of a depth that counts as the least (is_solid())
+    const std::stop_token& stop;  ///< after a stop request the search ends soon; its result is then unspecified
+};
+/// Sets depth and contacts of `finding`; object a is the mesh.
+void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
+                              Finding& finding);
+
+/// Sets depth and depth_kind: the least separating translation if is_solid(mesh, max_error); otherwise the depth of the deepest
+/// sample of either object inside the other, a lower bound, or 0 if no sample is inside.
+void set_depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, double max_error, Finding& finding);
 
 }  // namespace octopair

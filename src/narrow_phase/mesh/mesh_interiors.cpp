@@ -1,4 +1,11 @@
-#include "narrow_phase/mesh/mesh_interiors.hpp"
+// Whether the interiors of two meshes that touch have a point in common. Exact.
+//
+// Touch     Triangles of the meshes meet, but none pass through each other. Then no triangle's interior is cut by an edge of
+//           the other mesh, except by edges that lie in its plane. These edges divide the triangle into faces.
+// Faces     Each face lies inside the other mesh, outside, or on its surface. If the interiors have points in common, so does
+//           a face of a triangle that touches (its sides have, if it lies on the other surface), or a whole part that
+//           touches nothing. One point near a corner of each face decides (nearby_point.hpp).
+#include "narrow_phase/mesh/mesh_contacts.hpp"
 
 #include <algorithm>
 #include <array>

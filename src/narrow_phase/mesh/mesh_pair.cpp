@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "narrow_phase/exact/triangle_gap.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/mesh/mesh_leaves.hpp"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "narrow_phase/exact/triangle_gap.hpp"
+#include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/mesh/mesh_walk.hpp"
 #include "narrow_phase/mesh/world_boxes.hpp"
 

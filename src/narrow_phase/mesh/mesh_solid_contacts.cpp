@@ -1,14 +1,24 @@
-#include "narrow_phase/mesh/mesh_solid_contacts.hpp"
+// Contacts of a mesh and a convex solid that meet: depth and contacts.
+//
+// Depth     Of a convex mesh: the least translation that separates the solids. Of others a lower bound: the largest penetration
+//           depth of a triangle in the solid or, if that is larger, the depth of the deepest sample of one object inside the
+//           other.
+// Samples   Corners and centroids of triangles; the middle of the solid and its support points in 14 directions; of a hull
+//           also the middles between contacts.
+// Contacts  One for each triangle that meets the solid, with the shortest translation that separates the two. For a closed
+//           mesh the translation of the solid leads out of the mesh, never into it. Sorted by descending depth, then by the
+//           number of the triangle. Of more than max_contacts, the first ones in this order are kept; no more are in memory.
+#include "narrow_phase/mesh/mesh_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "geometry/vector.hpp"
-#include "narrow_phase/convex/convex_plane.hpp"
 #include "narrow_phase/mesh/deepest_contacts.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"
+#include "narrow_phase/plane_pair.hpp"
 
 namespace octopair {
 

@@ -121,7 +121,8 @@ public:
     }
 
 private:
-    struct Task {
+    /// A node that is not divided yet.
+    struct OpenNode {
         std::uint32_t node, begin, end, depth;
         LaneBox centres;  // box of the doubled centres of the items [begin, end)
     };
@@ -154,40 +155,40 @@ private:
     }
 
     /// Uses an explicit stack instead of recursion, because the mesh determines the depth of its tree.
-    void divide(const Task& root) {
-        std::vector<Task> tasks = {root};
-        while (!tasks.empty()) {
-            const Task task = tasks.back();
-            tasks.pop_back();
-            if (task.end - task.begin <= MeshTree::leaf_size) {
-                tree_.nodes[task.node].first = task.begin;
-                tree_.nodes[task.node].count = task.end - task.begin;
+    void divide(const OpenNode& root) {
+        std::vector<OpenNode> waiting = {root};
+        while (!waiting.empty()) {
+            const OpenNode open = waiting.back();
+            waiting.pop_back();
+            if (open.end - open.begin <= MeshTree::leaf_size) {
+                tree_.nodes[open.node].first = open.begin;
+                tree_.nodes[open.node].count = open.end - open.begin;
                 continue;
             }
-            Task left{0, task.begin, 0, task.depth + 1, {}}, right{0, 0, task.end, task.depth + 1, {}};
-            split(task, left, right);
+            OpenNode left{0, open.begin, 0, open.depth + 1, {}}, right{0, 0, open.end, open.depth + 1, {}};
+            split(open, left, right);
             left.node = std::uint32_t(tree_.nodes.size());
             right.node = left.node + 1;
             tree_.nodes.resize(left.node + 2);
-            tree_.nodes[task.node].first = left.node;
-            tree_.nodes[task.node].count = 0;
-            tasks.push_back(right);
-            tasks.push_back(left);
+            tree_.nodes[open.node].first = left.node;
+            tree_.nodes[open.node].count = 0;
+            waiting.push_back(right);
+            waiting.push_back(left);
         }
     }
 
     /// Partitions the items of a node. Sets the end of the left part, the begin of the right part, and the bounds of the centres of
     /// both. Neither part is empty.
-    void split(const Task& task, Task& left, Task& right) {
-        const std::span items(items_.data() + task.begin, task.end - task.begin);
+    void split(const OpenNode& open, OpenNode& left, OpenNode& right) {
+        const std::span items(items_.data() + open.begin, open.end - open.begin);
         int axis = 0;
         for (int other = 1; other < 3; ++other) {
-            if (task.centres.extent(other) > task.centres.extent(axis)) axis = other;
+            if (open.centres.extent(other) > open.centres.extent(axis)) axis = other;
         }
-        const float low = task.centres.low(axis), scale = bins / task.centres.extent(axis);
+        const float low = open.centres.low(axis), scale = bins / open.centres.extent(axis);
         std::size_t middle = 0;
         // Beyond this depth, halving keeps the tree within max_depth. Equal centres are halved too.
-        if (task.depth + std::bit_width(items.size()) < MeshTree::max_depth && std::isfinite(scale)) {
+        if (open.depth + std::bit_width(items.size()) < MeshTree::max_depth && std::isfinite(scale)) {
             const auto bin_of = [&](const Item& item) {
                 return std::min(int((item.doubled_centre(axis) - low) * scale), bins - 1);
             };
@@ -198,7 +199,7 @@ private:
         if (middle == 0 || middle == items.size()) middle = halve(items, axis);
         left.centres = centres_of(items.first(middle));
         right.centres = centres_of(items.subspan(middle));
-        left.end = right.begin = task.begin + std::uint32_t(middle);
+        left.end = right.begin = open.begin + std::uint32_t(middle);
     }
 
     static std::size_t halve(std::span<Item> items, int axis) {

@@ -1,6 +1,6 @@
 // first_time_within(): time of impact of two moving objects, by conservative advancement (Mirtich 1996).
 //
-// Steps     Both objects advance by a time in which they cannot meet (conservative_advancement.hpp). This is their distance
+// Steps     Both objects advance by a time in which they cannot meet. This is their distance
 //           divided by an upper bound on their relative speed. Or it is the gap between two separating planes divided by the
 //           speed at which the planes approach: objects that pass each other take few steps.
 // Safety    The result is never too late. Objects that are reported not to meet do not meet at any time.

@@ -1,11 +1,10 @@
-#include "narrow_phase/exact/crossing_part.hpp"
+#include "narrow_phase/exact/plane_crossing.hpp"
 
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstddef>
 
 #include "geometry/exact_integer.hpp"
-#include "narrow_phase/exact/orientation.hpp"
 
 namespace octopair {
 namespace {
