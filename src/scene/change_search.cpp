@@ -7,7 +7,7 @@
 #include "base/stop.hpp"
 #include "base/tuning.hpp"
 #include "boxes/pair_rule.hpp"
-#include "scene/scene_source.hpp"
+#include "scene/scene_box_source.hpp"
 
 namespace octopair {
 

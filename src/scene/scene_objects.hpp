@@ -13,7 +13,7 @@
 #include "octopair/scene.hpp"
 #include "scene/change_log.hpp"
 #include "scene/object_table.hpp"
-#include "scene/recording/call_encoder.hpp"
+#include "scene/recording/recording.hpp"
 
 namespace octopair {
 

@@ -29,8 +29,8 @@
 #include "scene/pair_history.hpp"
 #include "scene/queries/scene_queries.hpp"
 #include "scene/recording/recorder.hpp"
+#include "scene/scene_box_source.hpp"
 #include "scene/scene_objects.hpp"
-#include "scene/scene_source.hpp"
 #include "scene/searched_states.hpp"
 
 namespace octopair {
@@ -68,7 +68,7 @@ private:
     bool find_nothing(const std::stop_token& stop);
     bool expects_few_changes() const;
     void find_all(const std::stop_token& stop);
-    void build(const SceneSource& source, const std::stop_token& stop);
+    void build(const SceneBoxSource& source, const std::stop_token& stop);
     void build_octree_of_last_step(const std::stop_token& stop);
     bool find_changes(const std::stop_token& stop);
 

@@ -158,7 +158,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     states_.forget(SearchedStates::octree);
     if (!queried_) octree_.release();
     queried_ = false;
-    const SceneSource source(objects_.table(), margin_);
+    const SceneBoxSource source(objects_.table(), margin_);
     build(source, stop);
     detail::PairStorage& fresh = detail::storage_of(history_.fresh());
     fresh.reset();
@@ -174,7 +174,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
     states_.hold_now(SearchedStates::pairs);
 }
 
-void Scene::State::build(const SceneSource& source, const std::stop_token& stop) {
+void Scene::State::build(const SceneBoxSource& source, const std::stop_token& stop) {
     TeamExecutor executor(team_);
     const EntryRounding rounding{source.boxes().exact(), source.boxes().rounding()};
     // Rounded boxes are relative to an origin that is chosen anew for each build, so old octants do not fit new entries.
@@ -196,9 +196,9 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
     if (!follows && !states_.is_now(SearchedStates::octree)) {
         count_path(Path::octree_for_queries);
         states_.forget(SearchedStates::octree);
-        if (!states_.is_now(SearchedStates::linear)) build(SceneSource(objects_.table(), margin_), {});
+        if (!states_.is_now(SearchedStates::linear)) build(SceneBoxSource(objects_.table(), margin_), {});
         // The origin of rounding depends on indices that are no longer in use, so it is that of the build.
-        const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
+        const SceneBoxSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
         TeamExecutor executor(team_);
         octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});
         states_.hold_now(SearchedStates::octree);
@@ -212,7 +212,7 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
 void Scene::State::build_octree_of_last_step(const std::stop_token& stop) {
     count_path(Path::octree_rebuilt);
     states_.forget(SearchedStates::octree);
-    const SceneSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
+    const SceneBoxSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
     const auto load_bounds = [&](std::span<Entry> entries) {
         source.load_bounds(entries);
         for (Entry& entry : entries) {

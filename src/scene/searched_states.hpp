@@ -1,7 +1,8 @@
-// SearchedStates: which state of the searched boxes each octree of a scene describes, and which one its pairs describe.
+// SearchedStates: which state of the searched boxes each octree of a scene describes, and which state its pairs describe.
 //
-// A state is a number, and each change makes a new one. So nothing that holds boxes must be told when they change: it holds the current
-// boxes if its number is the current one, and those of the last step if its number is that of the last step.
+// Each state of the boxes has a number, and each change of the boxes makes a new state. A holder, which is an octree or the list of pairs,
+// has the number of the state that it describes. It describes the current boxes if this number is that of the current state. So a change
+// of the boxes needs no access to the holders.
 #pragma once
 
 #include <array>
@@ -13,14 +14,14 @@ class SearchedStates {
 public:
     enum Holder : std::uint8_t { linear, octree, pairs };
 
-    /// The boxes may change: no holder has the current ones any more.
+    /// The boxes may change: from now on no holder describes the current boxes.
     void change() { now_ = ++latest_; }
-    /// The boxes are those of the last step after all. Requires: has_stepped().
+    /// The boxes did not change: they are those of the last step. Requires: has_stepped().
     void set_unchanged() { now_ = last_step_; }
     /// A step has ended with the current boxes.
     void end_step() { last_step_ = now_; }
 
-    /// A holder is about to change, or what it has is not wanted.
+    /// From now on the holder describes no state: it is about to change, or its contents are not needed.
     void forget(Holder holder) { held_[holder] = none; }
     void hold_now(Holder holder) { held_[holder] = now_; }
     /// Requires: has_stepped().

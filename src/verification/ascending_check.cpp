@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "verification/pair_fault.hpp"
 #include "verification/result_check.hpp"
+#include "verification/row_pass.hpp"
 
 namespace octopair {
 

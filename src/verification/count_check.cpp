@@ -1,8 +1,8 @@
 // Check of counts: the number of pairs is compared, because a count has no pairs to compare.
 #include <atomic>
 
-#include "verification/pair_fault.hpp"
 #include "verification/result_check.hpp"
+#include "verification/row_pass.hpp"
 
 namespace octopair {
 

@@ -1,19 +1,35 @@
-// RowPass: visits rows of the second algorithm on the threads of a team.
+// RowPass: visits rows of the second algorithm on the threads of a team. A visit may report a fault of the checked result.
 //
 // Result     the difference at the lowest row where a visit reported one, so the result does not depend on threads.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <stop_token>
+#include <string>
 
+#include "octopair/objects.hpp"
 #include "octopair/options.hpp"
 #include "parallel/team.hpp"
-#include "verification/pair_fault.hpp"
 #include "verification/row_search.hpp"
 
 namespace octopair {
+
+/// Message for users that describes a fault of a result; none if there is no fault.
+using ResultFault = std::optional<std::string>;
+
+/// Throws: Error{engine_failed} with this message.
+[[noreturn]] void throw_verification_failed(const std::string& message);
+
+/// Returns a name such as "pair (12, 40)".
+std::string name_of_pair(const Pair& pair);
+
+/// Returns whether both numbers of a pair name objects: a < rows, b < columns, and a < b within one set.
+bool has_position(const RowSearch& rows, const Pair& pair);
+/// Returns a message that says why has_position() is false. Requires: it is.
+std::string fault_of_position(const RowSearch& rows, const Pair& pair);
 
 struct RowRange {
     std::uint32_t begin = 0, end = 0;

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "base/timed.hpp"
-#include "verification/pair_fault.hpp"
+#include "verification/row_pass.hpp"
 
 namespace octopair {
 

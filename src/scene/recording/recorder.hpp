@@ -12,7 +12,7 @@
 
 #include "base/descriptor.hpp"
 #include "base/memory.hpp"
-#include "scene/recording/call_encoder.hpp"
+#include "scene/recording/recording.hpp"
 
 namespace octopair {
 

@@ -13,7 +13,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
+#include <vector>
 
 #include "base/checksum.hpp"
 #include "base/private_export.hpp"
@@ -80,5 +82,40 @@ static_assert(sizeof(RecordedResult) == 32);
 /// Returns the record of a result. Its hash is the checksum of: number of pairs that began, these pairs, number of pairs that
 /// ended, these pairs, number of pairs that persist. Numbers are u64; a pair is two u32.
 RecordedResult recorded_result(const StepResult& result);
+
+/// The parts of a record before and after its payload.
+struct RecordEnvelope {
+    RecordHead head;
+    std::uint64_t checksum;
+};
+
+/// Returns the envelope of a record. Its payload is the concatenation of `pieces`.
+OCTOPAIR_PRIVATE_EXPORT RecordEnvelope envelope_of(RecordKind kind, std::initializer_list<Bytes> pieces);
+
+/// Encodes the calls of a scene as records. Derived classes store or send the records.
+class OCTOPAIR_PRIVATE_EXPORT CallEncoder {
+public:
+    virtual ~CallEncoder() = default;
+
+    /// All calls throw: Error{resource_limit} for more than 2^32 - 1 objects; everything that append() throws.
+    virtual void add(const Objects& objects, std::span<const Traits> traits);
+    /// Requires: `kind` is move or sweep.
+    virtual void move(RecordKind kind, std::span<const ObjectId> ids, const Boxes& boxes);
+    virtual void remove(std::span<const ObjectId> ids);
+    virtual void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
+
+protected:
+    CallEncoder() = default;
+    CallEncoder(const CallEncoder&) = default;
+    CallEncoder& operator=(const CallEncoder&) = default;
+
+    /// Appends a record. Its payload is the concatenation of `pieces`.
+    virtual void append(RecordKind kind, std::initializer_list<Bytes> pieces) = 0;
+
+private:
+    Bytes packed(std::span<const Traits> traits);
+
+    std::vector<RecordedTraits> traits_;  // buffer of packed()
+};
 
 }  // namespace octopair

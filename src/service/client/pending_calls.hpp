@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/recording/call_encoder.hpp"
+#include "scene/recording/recording.hpp"
 #include "scene/scene_objects.hpp"
 
 namespace octopair::service {

@@ -1,4 +1,5 @@
-#include "verification/shapes/convex_verdict.hpp"
+// Verdicts on two convex bodies: bounds on their distance and depth, and points of both.
+#include "verification/shapes/verdicts.hpp"
 
 #include <algorithm>
 #include <array>

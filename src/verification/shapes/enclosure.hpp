@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "verification/shapes/mesh_verdict.hpp"
+#include "verification/shapes/verdicts.hpp"
 
 namespace octopair::certificate {
 

@@ -1,4 +1,5 @@
-#include "verification/shapes/mesh_verdict.hpp"
+// Verdicts on pairs with a mesh: bounds on the distance of its triangles, signs of volumes, and winding numbers.
+#include "verification/shapes/verdicts.hpp"
 
 #include <algorithm>
 #include <cmath>

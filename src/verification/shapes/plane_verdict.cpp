@@ -1,4 +1,5 @@
-#include "verification/shapes/plane_verdict.hpp"
+// Verdicts on a plane and another object, by the extent of the object along the plane's normal.
+#include "verification/shapes/verdicts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +7,6 @@
 #include <string>
 #include <variant>
 #include <vector>
-
-#include "verification/shapes/mesh_verdict.hpp"
 
 namespace octopair::certificate {
 

@@ -6,9 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include "verification/shapes/convex_verdict.hpp"
-#include "verification/shapes/mesh_verdict.hpp"
-#include "verification/shapes/plane_verdict.hpp"
+#include "verification/shapes/verdicts.hpp"
 
 namespace octopair {
 

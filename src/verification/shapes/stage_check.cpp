@@ -6,7 +6,6 @@
 
 #include "base/stop.hpp"
 #include "parallel/team.hpp"
-#include "verification/pair_fault.hpp"
 #include "verification/row_pass.hpp"
 
 namespace octopair {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "octopair/client.hpp"
-#include "scene/recording/call_encoder.hpp"
+#include "scene/recording/recording.hpp"
 #include "service/client/connection.hpp"
 #include "service/client/scene_stream.hpp"
 

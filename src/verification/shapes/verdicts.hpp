@@ -1,6 +1,9 @@
-// Verdicts on two convex bodies, and the rules that verdicts on all shapes share.
+// Verdicts on pairs of convex bodies (convex_verdict.cpp), meshes (mesh_verdict.cpp) and planes (plane_verdict.cpp), and the rules that
+// they share.
 #pragma once
 
+#include <array>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -55,5 +58,40 @@ Real sticks_out(const ConvexBody& inner, const ConvexBody& outer, const std::vec
 
 /// Returns a number for a message, such as "0.25".
 std::string text_of(Real number);
+
+using Triangle = std::array<Vector, 3>;
+
+/// Returns the triangles of an object in the world; none if it is not a mesh.
+std::vector<Triangle> triangles_of(const JudgedObject& object);
+/// Returns the triangles of an object in its own coordinates.
+std::vector<Triangle> local_triangles_of(const JudgedObject& object);
+/// Returns a lower bound on the distance of a point from triangles: their distance, or a number above `limit`. Complexity: linear.
+Real least_distance(const Point3d& point, const std::vector<Triangle>& triangles, Real limit);
+
+/// Judges two objects of which at least one is a mesh, and neither is a plane. Requires: a mesh has a triangle.
+/// Depths and contacts are not checked. Throws: Error{cancelled}.
+PairVerdict judge_meshes(const JudgedPair& pair, const Decision& decision, const std::stop_token& stop);
+
+/// A plane in the world: the points x with normal · x = offset. `normal` has the length 1.
+struct WorldPlane {
+    Vector normal;
+    Real offset;
+
+    Real height(const Vector& point) const { return dot(normal, point) - offset; }
+};
+
+/// Requires: the shape of `object` is a plane.
+WorldPlane plane_in_world(const JudgedObject& object);
+
+/// A plane and another object, which is not a plane.
+struct PlanePair {
+    WorldPlane plane;
+    bool plane_is_first;  ///< the plane is object a of the finding
+    const JudgedObject& other;
+    ConvexBody body;  ///< the other object, or the convex hull of its mesh
+};
+
+/// Judges a plane and another object. Of meshes, depths and contacts are not checked.
+PairVerdict judge_plane(const PlanePair& pair, const Decision& decision);
 
 }  // namespace octopair::certificate

@@ -1,21 +1,21 @@
-#include "scene/scene_source.hpp"
+#include "scene/scene_box_source.hpp"
 
 #include <algorithm>
 #include <limits>
 
 namespace octopair {
 
-SceneSource::SceneSource(const ObjectTable& table, double margin)
+SceneBoxSource::SceneBoxSource(const ObjectTable& table, double margin)
     : table_(table), objects_(table.objects()), all_(objects_, nullptr, margin) {
     find_runs();
 }
 
-SceneSource::SceneSource(const ObjectTable& table, const EntryForm& form)
+SceneBoxSource::SceneBoxSource(const ObjectTable& table, const EntryForm& form)
     : table_(table), objects_(table.objects()), all_(objects_, nullptr, form) {
     find_runs();
 }
 
-void SceneSource::find_runs() {
+void SceneBoxSource::find_runs() {
     if (table_.size() == table_.indices()) {
         runs_.push_back({0, 0});
         return;
@@ -30,18 +30,18 @@ void SceneSource::find_runs() {
     }
 }
 
-const SceneSource::Run& SceneSource::run_at(std::size_t position) const {
+const SceneBoxSource::Run& SceneBoxSource::run_at(std::size_t position) const {
     return *(std::upper_bound(runs_.begin(), runs_.end(), position,
                               [](std::size_t at, const Run& run) { return at < run.position; }) -
              1);
 }
 
-std::size_t SceneSource::index_at(std::size_t position) const {
+std::size_t SceneBoxSource::index_at(std::size_t position) const {
     const Run& run = run_at(position);
     return run.index + (position - run.position);
 }
 
-bool SceneSource::load(std::size_t begin, std::span<Entry> out) const {
+bool SceneBoxSource::load(std::size_t begin, std::span<Entry> out) const {
     bool good = true;
     while (!out.empty()) {
         const Run* const run = &run_at(begin);
@@ -57,29 +57,29 @@ bool SceneSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-PlainBoxes SceneSource::plain(std::size_t begin, std::size_t count) const {
+PlainBoxes SceneBoxSource::plain(std::size_t begin, std::size_t count) const {
     if (runs_.size() != 1 || table_.any_traits()) return {};
     return all_.plain(begin + runs_[0].index, count);
 }
 
-void SceneSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
+void SceneBoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
     std::vector<std::size_t> indices(positions.size());
     std::transform(positions.begin(), positions.end(), indices.begin(), [&](std::size_t at) { return index_at(at); });
     all_.pick(indices, out);
 }
 
-RoundingSlack SceneSource::slack() const {
+RoundingSlack SceneBoxSource::slack() const {
     if (!table_.any_traits()) return all_.slack();
     // No hit is certain before is_pair() has checked the traits.
     constexpr float all = std::numeric_limits<float>::infinity();
     return {{all, all, all}};
 }
 
-bool SceneSource::is_pair(std::uint32_t a, std::uint32_t b) const {
+bool SceneBoxSource::is_pair(std::uint32_t a, std::uint32_t b) const {
     return compatible(table_.traits(a), table_.traits(b)) && all_.is_pair(a, b);
 }
 
-std::size_t SceneSource::refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
+std::size_t SceneBoxSource::refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
     return table_.any_traits() ? refused_one_by_one(doubtful, out) : all_.refused(doubtful, out);
 }
 

@@ -1,4 +1,4 @@
-// SceneSource: presents a scene to the full detection: the objects that are alive, and the pairs that traits allow.
+// SceneBoxSource: presents a scene to the full detection: the objects that are alive, and the pairs that traits allow.
 //
 // Positions number the objects that are alive, in ascending order of their indices.
 #pragma once
@@ -17,11 +17,11 @@ inline bool compatible(const Traits& a, const Traits& b) {
     return (a.mask & b.groups) != 0 && (b.mask & a.groups) != 0 && !(a.fixed && b.fixed);
 }
 
-class SceneSource final : public EntrySource, public PairRule {
+class SceneBoxSource final : public EntrySource, public PairRule {
 public:
     /// Borrows `table`. Requires: the table does not change while this source exists.
-    SceneSource(const ObjectTable& table, double margin);
-    SceneSource(const ObjectTable& table, const EntryForm& form);
+    SceneBoxSource(const ObjectTable& table, double margin);
+    SceneBoxSource(const ObjectTable& table, const EntryForm& form);
 
     std::size_t size() const override { return std::size_t(table_.size()); }
     bool load(std::size_t begin, std::span<Entry> out) const override;
