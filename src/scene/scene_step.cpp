@@ -27,8 +27,9 @@ constexpr double max_rebuild_cost = 0.5;  // an octree is built if the changes a
 constexpr double abort_cost = 4;          // an incremental step that takes longer, plus abort_seconds, is aborted
 constexpr double abort_seconds = 0.02;    // allowance for other programs that use the processor meanwhile
 
-// With slack a full step enlarges all boxes anew, so that few objects leave them in the next steps. Therefore an incremental step must
-// be much cheaper. Before many objects leave, the fastest do: only if few leave in several steps, an octree is built.
+// With slack, a full step enlarges all searched boxes, so few objects leave them in the next steps. So an incremental step is chosen only
+// if it is much cheaper. The fastest objects leave their boxes first, and many others follow later. So an octree is built only if few
+// objects left in several steps, one after another.
 constexpr double max_cost_with_slack = 0.1;
 constexpr unsigned min_steps_with_few = 4;
 
@@ -90,7 +91,7 @@ const StepResult& Scene::State::step(const std::stop_token& stop) {
         throw Error(ErrorCode::resource_limit, "out of memory");
     } catch (const Error& error) {
         if (error.code() == ErrorCode::engine_failed) {
-            // A search had wrong results. The next step builds all from the objects.
+            // A search had wrong results, perhaps because of its octree. The next step builds all octrees from the objects.
             states_.forget(SearchedStates::octree), states_.forget(SearchedStates::linear);
             refills_ = tuning().scene.max_refills;
         }
@@ -139,7 +140,7 @@ bool Scene::State::find_nothing(const std::stop_token& stop) {
 
 /// Returns whether an incremental step is possible, and expected to be cheaper than a full one.
 bool Scene::State::expects_few_changes() const {
-    // Pairs are newer than the last step if the step after them failed later.
+    // The pairs describe a later state than that of the last step if a step found them and then failed.
     const bool has_octree = states_.is_last_step(SearchedStates::octree);
     if (!states_.is_last_step(SearchedStates::pairs) || !(has_octree || states_.is_last_step(SearchedStates::linear)))
         return false;
@@ -148,7 +149,7 @@ bool Scene::State::expects_few_changes() const {
     if (exact_) most = std::min(most, max_cost_with_slack);
     const bool often = !exact_ || has_octree || steps_with_few_ >= min_steps_with_few;
     const bool cheap = chooses_incremental(expected <= most * full_seconds_ && often);
-    // Exact entries were not widened by paddings.
+    // Exact entries are boxes without paddings. They do not serve objects that have paddings by now.
     const bool unlike = rounding_.exact && objects_.table().any_padding();
     return cheap && !unlike && !objects_.log().overflowed() && !history_.is_inconsistent();
 }
@@ -197,7 +198,7 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
         count_path(Path::octree_for_queries);
         states_.forget(SearchedStates::octree);
         if (!states_.is_now(SearchedStates::linear)) build(SceneBoxSource(objects_.table(), margin_), {});
-        // The origin of rounding depends on indices that are no longer in use, so it is that of the build.
+        // The origin of rounding depends on all objects, also on those that were removed since the build. So that of the build is used.
         const SceneBoxSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
         TeamExecutor executor(team_);
         octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});

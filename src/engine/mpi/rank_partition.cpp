@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/test_hooks.hpp"
-#include "engine/mpi/comm/cost_meter.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
 #include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"

@@ -8,7 +8,6 @@
 #include "base/test_hooks.hpp"
 #include "base/timed.hpp"
 #include "engine/mpi/comm/agreement.hpp"
-#include "engine/mpi/comm/cost_meter.hpp"
 #include "engine/mpi/comm/relay.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/order/ascending_pieces.hpp"
@@ -385,7 +384,8 @@ bool RankSearch::list_octal(Call& call, std::uint64_t most) {
 void RankSearch::find_windows(RankCall& rank_call, Call& call) {
     const RowBins bins(rank_call.joint.totals[0]);
     std::vector<std::uint64_t> counts;
-    detail::storage_of(found_).reset();  // the pairs of this rank may have fitted into its buffer
+    // It has pairs if those of this rank fitted into the buffer, but not those of another rank.
+    detail::storage_of(found_).reset();
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.scan);
         counts.resize(bins.size(), 0);
@@ -393,7 +393,7 @@ void RankSearch::find_windows(RankCall& rank_call, Call& call) {
     });
     comm_.add_up(counts);
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
-    // A rank stores a window three times for a while: as found, sent and received pairs.
+    // For some time a rank stores the pairs of a window three times: as found, as sent, and as received.
     const std::uint64_t fit = std::max<std::uint64_t>(1, call.buffer_pairs() / 3);
     const unsigned windows = unsigned(all / (fit * comm_.size()) + 1);
     const PiecePlan plan(bins, counts, {comm_.size(), windows, rank_call.relay.has_value()});

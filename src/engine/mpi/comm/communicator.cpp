@@ -6,7 +6,6 @@
 #include <string>
 #include <thread>
 
-#include "engine/mpi/comm/cost_meter.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

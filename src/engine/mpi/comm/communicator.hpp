@@ -1,4 +1,5 @@
-// Communicator: typed wrapper of the MPI functions that the engine uses. Counts all traffic.
+// Communicator: typed wrapper of the MPI functions that the engine uses. Counts all traffic. Beside it the processor time of a rank
+// without MPI (CostMeter), and the pauses of a rank that must probe (Backoff).
 //
 // Calls      functions that send or receive are collective, unless their comment says otherwise: all ranks call them, in the
 //            same order.
@@ -13,6 +14,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -161,6 +163,30 @@ private:
     std::vector<MPI_Request> stops_;
     MessageTape* tape_ = nullptr;
     MPI_Request heartbeat_ = MPI_REQUEST_NULL;
+};
+
+/// Returns the processor time of this thread.
+inline double thread_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return double(now.tv_sec) + double(now.tv_nsec) * 1e-9;
+}
+
+/// Adds the processor time of its scope on this rank, without the time spent within MPI, to `seconds`; also if an exception leaves the
+/// scope. Processor time is used, because wall-clock time is meaningless with fewer cores than ranks.
+class CostMeter {
+public:
+    CostMeter(const Communicator& comm, double& seconds) : comm_(comm), seconds_(seconds) {}
+    CostMeter(const CostMeter&) = delete;
+    CostMeter& operator=(const CostMeter&) = delete;
+    ~CostMeter() { seconds_ += outside_mpi() - begin_; }
+
+private:
+    double outside_mpi() const { return thread_seconds() - comm_.traffic().cpu_seconds; }
+
+    const Communicator& comm_;
+    double& seconds_;
+    double begin_ = outside_mpi();
 };
 
 /// Pauses a rank that waits for messages and must probe for them. A pause grows with the time since the backoff was made, up to 5 ms, a

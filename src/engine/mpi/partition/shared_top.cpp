@@ -83,7 +83,8 @@ private:
         for (unsigned axis = 0; axis < 3; ++axis) {
             const double extent = double(cells.hi[axis] - cells.lo[axis]) / side;
             least = std::min(least, extent);
-            part *= std::min(1.0, 2 * extent);  // of the positions where a box of equal extent overlaps this one
+            // The part of the positions at which a box of equal extent overlaps this box.
+            part *= std::min(1.0, 2 * extent);
         }
         sums[shortest] += std::uint32_t(least * fraction_unit);
         sums[overlapped] += std::uint32_t(part * fraction_unit);
