@@ -9,6 +9,7 @@
 #include "baselines/paper_steps.hpp"
 #include "samples/random.hpp"
 #include "samples/scenes.hpp"
+#include "support/calls.hpp"
 #include "support/cases.hpp"
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
@@ -24,7 +25,7 @@ constexpr std::uint64_t scenes_per_kind = test::scaled(40, 4);
 class Baselines : public ::testing::TestWithParam<std::string> {};
 
 void expect_agreement(const std::vector<Box3f>& boxes) {
-    const Objects objects{std::span<const Box3f>(boxes)};
+    const Objects objects{boxes};
     const std::vector<Pair> expected = oracle_pairs(objects);
     EXPECT_TRUE(same_pairs(naive_pairs(std::span<const Box3f>(boxes)), expected, {objects})) << "naive";
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -48,7 +49,7 @@ TEST_P(Baselines, PaperAgreesForAnyLevelAndNumberOfSlaves) {
         const std::uint64_t seed = test::case_seed(GetParam(), i);
         SCOPED_TRACE("replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const std::vector<Box3f> boxes = test::make_boxes(GetParam(), seed % 100, seed);
-        const Objects objects{std::span<const Box3f>(boxes)};
+        const Objects objects{boxes};
         const PaperSettings settings{unsigned(seed >> 8) % 5, 1 + unsigned(seed >> 16) % 3,
                                      1 + unsigned(seed >> 24) % 3, PaperSort(seed >> 32 & 1)};
         const PaperResult result = paper_pairs(boxes, settings);
@@ -112,9 +113,7 @@ TEST(BaselinesPaper, TheBestLevelIsAPossibleOne) {
         EXPECT_GE(level, 1u) << objects;
         EXPECT_LE(level, OctalCode::max_level) << objects;
     }
-    std::stop_source stop;
-    stop.request_stop();
-    EXPECT_EQ(best_paper_level(samples::make_scene("uniform", 3000, 1), {}, stop.get_token()), 4u);
+    EXPECT_EQ(best_paper_level(samples::make_scene("uniform", 3000, 1), {}, requested_stop()), 4u);
 }
 
 TEST(BaselinesPaper, AnObjectThatFillsTheWorldHasOneCode) {
@@ -131,7 +130,7 @@ TEST(BaselinesICollide, FollowsMovingScenes) {
     samples::generate_scene({"brownian", objects, 3, 20}, [&](std::span<const Box3f> batch) {
         frame.insert(frame.end(), batch.begin(), batch.end());
         if (frame.size() < objects) return;
-        const Objects all{std::span<const Box3f>(frame)};
+        const Objects all{frame};
         EXPECT_TRUE(same_pairs(ascending(engine.next_frame(frame)), oracle_pairs(all), {all})) << "frame " << frames;
         ++frames;
         frame.clear();
@@ -144,7 +143,7 @@ TEST(BaselinesICollide, FollowsLeapsAndChangesOfNumber) {
     for (const std::string& kind : test::all_kind_names()) {
         for (const std::uint64_t objects : {200, 200, 150}) {
             const auto boxes = test::make_boxes(kind, objects, objects + kind.size());
-            const Objects all{std::span<const Box3f>(boxes)};
+            const Objects all{boxes};
             EXPECT_TRUE(same_pairs(ascending(engine.next_frame(boxes)), oracle_pairs(all), {all})) << kind;
         }
     }
@@ -153,12 +152,12 @@ TEST(BaselinesICollide, FollowsLeapsAndChangesOfNumber) {
 TEST(BaselinesOracle, RuleHoldsToTheLastBit) {
     const float gap = 0x1p-10f;
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1 + gap, 0, 0}, {2, 1, 1}}};
-    const Objects objects{std::span<const Box3f>(boxes)};
+    const Objects objects{boxes};
     EXPECT_TRUE(oracle_pairs(objects).empty());
     EXPECT_EQ(oracle_pairs(objects, gap).size(), 1u);
     EXPECT_TRUE(oracle_pairs(objects, std::nextafter(double(gap), 0)).empty());
     const std::vector<double> padding = {gap / 2, gap / 4};
-    const Objects padded{std::span<const Box3f>(boxes), padding};
+    const Objects padded{boxes, padding};
     EXPECT_TRUE(oracle_pairs(padded).empty());
     EXPECT_EQ(oracle_pairs(padded, gap / 4).size(), 1u);
     EXPECT_EQ(oracle_pairs_between(objects, padded, gap * 3 / 4), (std::vector<Pair>{{0, 0}, {0, 1}, {1, 0}, {1, 1}}));

@@ -12,9 +12,9 @@ TEST_F(Bench, PaperWritesTextAndJson) {
     const Outcome outcome = run("paper --objects 2000 1000 --rounds 3 --threads 2 --json f");
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
-    EXPECT_NE(outcome.out.find("Figure 5: run time in milliseconds, uniform"), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find("Run time in microseconds, 2,000 objects"), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find("holds better"), std::string::npos) << outcome.out;
+    EXPECT_TRUE(has_text(outcome.out, "Figure 5: run time in milliseconds, uniform"));
+    EXPECT_TRUE(has_text(outcome.out, "Run time in microseconds, 2,000 objects"));
+    EXPECT_TRUE(has_text(outcome.out, "holds better"));
     const auto json = nlohmann::json::parse(content("f"));
     EXPECT_EQ(json["scene"], "uniform");
     EXPECT_TRUE(json.contains("commit") && json.contains("processor") && json.contains("cores"));
@@ -33,7 +33,7 @@ TEST_F(Bench, PaperWritesTextAndJson) {
 TEST_F(Bench, PaperTakesAnyScene) {
     const Outcome outcome = run("paper --scene clustered --objects 500 --rounds 1 --threads 1 --quiet");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find(", clustered\n"), std::string::npos) << outcome.out;
+    EXPECT_TRUE(has_text(outcome.out, ", clustered\n"));
     EXPECT_EQ(directory_.names(), std::vector<std::string>{});
 }
 

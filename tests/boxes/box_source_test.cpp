@@ -182,9 +182,8 @@ TEST(BoxSource, BoundsAreLoadedAgain) {
         }
         padding[i] = length(random);
     }
-    const std::array<Objects, 4> sets = {
-        Objects{std::span<const Box3f>(narrow)}, Objects{std::span<const Box3f>(narrow), padding},
-        Objects{std::span<const Box3d>(wide)}, Objects{std::span<const Box3d>(wide), padding}};
+    const std::array<Objects, 4> sets = {Objects{narrow}, Objects{narrow, padding}, Objects{wide},
+                                         Objects{wide, padding}};
     for (const double margin : {0.0, 0.1}) {
         for (const Objects& first : sets) {
             expect_same_bounds({first, nullptr, margin}, random);

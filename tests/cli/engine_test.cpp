@@ -143,17 +143,17 @@ TEST_F(Engines, StatsSayWhereItRan) {
     save_boxes("a.npy", {0, 0.5, 9});
     const Outcome outcome = run(std::string("detect a.npy --output p.npy --stats s.json") + on_workers + "3");
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.err.find(" on 3 workers\n"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(has_text(outcome.err, " on 3 workers\n"));
     const auto stats = nlohmann::json::parse(content("s.json"));
     EXPECT_EQ(stats["engine"], "processes");
     EXPECT_EQ(stats["threads"], 0);
     EXPECT_EQ(stats["workers"], 3);
     EXPECT_EQ(stats["pairs"], 1);
     EXPECT_GE(stats["entries"].get<int>(), 3);
-    EXPECT_NE(run("detect a.npy --engine processes --workers 1").err.find(" on 1 worker\n"), std::string::npos);
+    EXPECT_TRUE(has_text(run("detect a.npy --engine processes --workers 1").err, " on 1 worker\n"));
     ASSERT_EQ(run("detect a.npy --engine processes --workers 0 --stats s.json --quiet").status, 0);
     EXPECT_GE(nlohmann::json::parse(content("s.json"))["workers"].get<int>(), 1) << "one worker per core";
-    EXPECT_NE(run("info").out.find("engines          local, processes"), std::string::npos);
+    EXPECT_TRUE(has_text(run("info").out, "engines          local, processes"));
 }
 
 TEST_F(Engines, SameEvents) {
@@ -210,7 +210,7 @@ TEST_F(Engines, RefusesAnInvalidWorkerProgram) {
     EXPECT_EQ(missing.err, "octopair: cannot start the worker program /nonexistent: No such file or directory\n");
     const Outcome other = shell("OCTOPAIR_WORKER=/bin/false \"$P\" detect a.npy --engine processes --output p.npy");
     EXPECT_EQ(other.status, 6);
-    EXPECT_NE(other.err.find("/bin/false"), std::string::npos) << other.err;
+    EXPECT_TRUE(has_text(other.err, "/bin/false"));
     EXPECT_EQ(directory_.names(), std::vector<std::string>{"a.npy"});
 }
 
@@ -308,7 +308,7 @@ TEST_F(Engines, WhatWasNotBuiltIsSaid) {
     const Outcome outcome = run("detect a.npy --engine processes");
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.err, "octopair: --engine: this octopair was built without 'processes'; it has: local\n");
-    EXPECT_NE(run("info").out.find("engines          local\n"), std::string::npos);
+    EXPECT_TRUE(has_text(run("info").out, "engines          local\n"));
 }
 
 #endif

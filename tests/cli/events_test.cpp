@@ -185,7 +185,7 @@ TEST_F(Events, ASceneThatStandsStillHasOneFrame) {
 TEST_F(Events, StatsAndSummary) {
     save_three();
     const Outcome outcome = run("detect m.npy --events --stats s.json --threads 2");
-    EXPECT_NE(outcome.err.find("pairs       2\nevents      2 began, 2 ended\n"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(has_text(outcome.err, "pairs       2\nevents      2 began, 2 ended\n"));
     const auto stats = nlohmann::json::parse(content("s.json"));
     for (const auto& [key, value] : std::map<std::string, int>{
              {"objects", 3}, {"frames", 3}, {"pairs", 2}, {"began", 2}, {"ended", 2}, {"threads", 2}}) {

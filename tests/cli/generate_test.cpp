@@ -30,7 +30,7 @@ TEST_F(Generate, FramesGiveAMovingScene) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "m.npy: 50 objects in each of 4 frames, brownian, seed 1\n");
     EXPECT_EQ(content("m.npy").size(), 128u + 4u * 50u * 24u);
-    EXPECT_NE(content("m.npy").find("'shape': (4, 50, 6)"), std::string::npos);
+    EXPECT_TRUE(has_text(content("m.npy"), "'shape': (4, 50, 6)"));
 }
 
 TEST_F(Generate, NoObjects) {

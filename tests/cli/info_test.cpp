@@ -22,7 +22,7 @@ protected:
 TEST_F(Info, OfTheProgramWithoutFiles) {
     const Outcome outcome = run("info");
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.out.find("\nengines          local"), std::string::npos);
+    EXPECT_TRUE(has_text(outcome.out, "\nengines          local"));
 }
 
 TEST_F(Info, OfBoxesAndSpheres) {
@@ -32,16 +32,13 @@ TEST_F(Info, OfBoxesAndSpheres) {
               "axes             not known\nobjects          2 boxes\nbounds           0 0 0 to 2 1 1\n"
               "not read         nothing that octopair knows of\n");
     write_file(file("s.npy"), npy_of(io::NpyType::float64, {1, 4}, std::vector<double>{0, 0, 0, 1}));
-    EXPECT_NE(run("info s.npy").out.find("objects          1 sphere\nbounds           -1 -1 -1 to 1 1 1\n"),
-              std::string::npos);
+    EXPECT_TRUE(has_text(run("info s.npy").out, "objects          1 sphere\nbounds           -1 -1 -1 to 1 1 1\n"));
     write_file(file("m.csv"), npy_of(io::NpyType::float32, {2, 1, 6}, std::vector<float>(12, 0)));
     const std::string moving = run("info m.csv").out;
-    EXPECT_NE(moving.find("frames           2\n"), std::string::npos) << moving;
-    EXPECT_NE(moving.find("warning          is NumPy, not CSV as its name says; it is read as NumPy\n"),
-              std::string::npos)
-        << moving;
+    EXPECT_TRUE(has_text(moving, "frames           2\n"));
+    EXPECT_TRUE(has_text(moving, "warning          is NumPy, not CSV as its name says; it is read as NumPy\n"));
     write_file(file("empty.csv"), "");
-    EXPECT_NE(run("info empty.csv").out.find("warning          has no object\n"), std::string::npos);
+    EXPECT_TRUE(has_text(run("info empty.csv").out, "warning          has no object\n"));
 }
 
 TEST_F(Info, RefusesWhatCannotBeRead) {
@@ -73,12 +70,11 @@ TEST_F(Info, RulesAndBaselinesMayBeWrappedToo) {
     save_boxes("a.npy", {0, 1});
     write_file(file("rules.json"), "\x1f\x8b\x08 ");
     write_file(file("old.jsonl"), "<html>");
-    EXPECT_NE(run("detect a.npy --stage pairs --exclude rules.json")
-                  .err.find("rules.json: is compressed with gzip; unpack it"),
-              std::string::npos);
+    EXPECT_TRUE(has_text(run("detect a.npy --stage pairs --exclude rules.json").err,
+                         "rules.json: is compressed with gzip; unpack it"));
 #ifdef OCTOPAIR_WITH_PIPELINE
     write_file(file("s.json"), R"({"objects": [{"shape": {"type": "sphere", "radius": 1}}]})");
-    EXPECT_NE(run("detect s.json --baseline old.jsonl").err.find("old.jsonl: is an HTML page"), std::string::npos);
+    EXPECT_TRUE(has_text(run("detect s.json --baseline old.jsonl").err, "old.jsonl: is an HTML page"));
 #endif
 }
 
@@ -88,7 +84,7 @@ TEST_F(Info, BoxesHaveNoTriangles) {
     for (const std::string inputs : {"a.npy", "a.csv", "a.csv --against a.npy", "a.npy --stage pairs"}) {
         const Outcome outcome = run("detect " + inputs + " --objects triangle");
         EXPECT_EQ(outcome.status, 2) << inputs;
-        EXPECT_NE(outcome.err.find("has only boxes, no triangles"), std::string::npos) << outcome.err;
+        EXPECT_TRUE(has_text(outcome.err, "has only boxes, no triangles"));
     }
 }
 
@@ -103,25 +99,22 @@ TEST_F(Info, OfMeshesAndShapes) {
         file("s.json"),
         R"({"objects": [{"shape": {"type": "sphere", "radius": 1}}, {"shape": {"type": "mesh", "file": "a.obj"}}]})");
     const std::string both = run("info s.json a.obj").out;
-    EXPECT_NE(both.find("objects          1 sphere, 1 mesh\n"), std::string::npos) << both;
-    EXPECT_NE(both.find("\n\nfile             a.obj\n"), std::string::npos) << both;
+    EXPECT_TRUE(has_text(both, "objects          1 sphere, 1 mesh\n"));
+    EXPECT_TRUE(has_text(both, "\n\nfile             a.obj\n"));
     write_file(file("line.obj"), "v 0 0 0\nv 1 0 0\nl 1 2\n");
-    EXPECT_NE(run("info line.obj").out.find("not read         1 object has only points or lines\n"), std::string::npos);
+    EXPECT_TRUE(has_text(run("info line.obj").out, "not read         1 object has only points or lines\n"));
 }
 
 TEST_F(Info, OfAFormatOfAssimp) {
     write_file(file("a.raw"), "part\n0 0 0 1 0 0 0 1 0\n");
     const std::string text = run("info a.raw").out;
-    EXPECT_NE(text.find("format           raw triangles, read by Assimp (octopair does not vouch for it)\n"),
-              std::string::npos)
-        << text;
+    EXPECT_TRUE(has_text(text, "format           raw triangles, read by Assimp (octopair does not vouch for it)\n"));
     const Outcome outcome = run("detect a.raw --output p.csv");
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.err.find(
-                  "warning     a.raw: Assimp reads raw triangles; octopair does not vouch for it: check the number of "
-                  "objects and the bounds\n"),
-              std::string::npos)
-        << outcome.err;
+    EXPECT_TRUE(
+        has_text(outcome.err,
+                 "warning     a.raw: Assimp reads raw triangles; octopair does not vouch for it: check the number of "
+                 "objects and the bounds\n"));
 }
 
 TEST_F(Info, WarningsOfFilesThatASceneNames) {
@@ -130,12 +123,8 @@ TEST_F(Info, WarningsOfFilesThatASceneNames) {
     write_file(file("s.json"), R"({"objects": [{"shape": {"type": "mesh", "file": "part.raw"}},
 {"shape": {"type": "mesh", "file": "obj.stl"}}]})");
     const std::string text = run("info s.json").out;
-    EXPECT_NE(text.find("warning          part.raw: Assimp reads raw triangles; octopair does not vouch"),
-              std::string::npos)
-        << text;
-    EXPECT_NE(text.find("warning          obj.stl: is OBJ, not STL as its name says; it is read as OBJ\n"),
-              std::string::npos)
-        << text;
+    EXPECT_TRUE(has_text(text, "warning          part.raw: Assimp reads raw triangles; octopair does not vouch"));
+    EXPECT_TRUE(has_text(text, "warning          obj.stl: is OBJ, not STL as its name says; it is read as OBJ\n"));
 }
 
 /// Assimp crashes on a body of a type that IFC2x3 does not have.
@@ -165,11 +154,10 @@ END-ISO-10303-21;
 )");
     const Outcome outcome = run("detect a.ifc");
     EXPECT_EQ(outcome.status, 3);
-    EXPECT_NE(outcome.err.find(
-                  "the file is IFC4 and has 1 IfcTriangulatedFaceSet, 1 IfcCartesianPointList3D; Assimp knows only the "
-                  "types of IFC2x3. Export the model as IFC2x3, glTF or OBJ\n"),
-              std::string::npos)
-        << outcome.err;
+    EXPECT_TRUE(
+        has_text(outcome.err,
+                 "the file is IFC4 and has 1 IfcTriangulatedFaceSet, 1 IfcCartesianPointList3D; Assimp knows only the "
+                 "types of IFC2x3. Export the model as IFC2x3, glTF or OBJ\n"));
 }
 #endif
 

@@ -166,12 +166,11 @@ TEST_F(Stages, StatsListTheFilters) {
     EXPECT_EQ(told["filters"][3]["in"], told["filters"][2]["out"]);
     EXPECT_EQ(told["filters"][3]["out"], 0);
     const std::string summary = run("detect t.obj --output p.npy").err;
-    EXPECT_NE(
-        summary.find("pairs       1\nclasses     1 collision\nnot closed  3 of 3 objects have no inside (--weld joins "
-                     "vertices): flat, beside, through\ncandidates  2\nfilter      bounding spheres: "),
-        std::string::npos)
-        << summary;
-    EXPECT_NE(summary.find("\nfilter      exact object: 1 of "), std::string::npos) << summary;
+    EXPECT_TRUE(
+        has_text(summary,
+                 "pairs       1\nclasses     1 collision\nnot closed  3 of 3 objects have no inside (--weld joins "
+                 "vertices): flat, beside, through\ncandidates  2\nfilter      bounding spheres: "));
+    EXPECT_TRUE(has_text(summary, "\nfilter      exact object: 1 of "));
     EXPECT_FALSE(stats("t.obj --stage pairs").contains("filters"));
 }
 
@@ -179,11 +178,10 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     ASSERT_EQ(run("detect t.obj --margin 1 --quiet --output old.jsonl").status, 0);
     const Outcome fewer = run("detect t.obj --baseline old.jsonl --output p.csv --stats s.json");
     ASSERT_EQ(fewer.status, 0);
-    EXPECT_NE(fewer.err.find("\nchanges     0 new, 1 same, 2 gone\n"), std::string::npos) << fewer.err;
+    EXPECT_TRUE(has_text(fewer.err, "\nchanges     0 new, 1 same, 2 gone\n"));
     EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 2);
-    EXPECT_NE(
-        content("p.csv").find("0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,flat,through,t.obj,t.obj,same\n0,1,"),
-        std::string::npos);
+    EXPECT_TRUE(has_text(content("p.csv"),
+                         "0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,flat,through,t.obj,t.obj,same\n0,1,"));
     // The result is the next baseline. Rows that are marked as gone are not part of that baseline.
     ASSERT_EQ(run("detect t.obj --baseline old.jsonl --output p.jsonl --quiet").status, 0);
     ASSERT_EQ(run("detect t.obj --baseline p.jsonl --margin 0.5 --stats s.json --output q.npy --quiet").status, 0);
@@ -194,23 +192,23 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     EXPECT_EQ(run("detect t.obj --baseline bad.jsonl --output r.csv").status, 3);
     EXPECT_FALSE(std::filesystem::exists(file("r.csv")));
     for (const std::string with : {"--stage pairs", "--limit 1", "--count-only"}) {
-        EXPECT_NE(refusal("t.obj --baseline p.jsonl " + with).find("--baseline: "), std::string::npos) << with;
+        EXPECT_TRUE(has_text(refusal("t.obj --baseline p.jsonl " + with), "--baseline: ")) << with;
     }
 }
 
 TEST_F(Stages, ReportsAreTheSameFromRunToRun) {
     ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 1").status, 0);
     const std::string page = content("r.html");
-    EXPECT_NE(page.find("t.obj/through"), std::string::npos);
+    EXPECT_TRUE(has_text(page, "t.obj/through"));
     EXPECT_EQ(page.find("http"), page.find("http-equiv"));  // the page fetches nothing
     ASSERT_EQ(run("detect t.obj --stage features --report r.html --output p.csv --threads 3").status, 0);
     EXPECT_EQ(content("r.html"), page);
     EXPECT_EQ(run("detect t.obj --report none/r.html").status, 4);
-    EXPECT_NE(refusal("t.obj --report r.txt").find("--report: r.txt: "), std::string::npos);
-    EXPECT_NE(refusal("t.obj --report r.html --count-only").find("--report: "), std::string::npos);
-    EXPECT_NE(page.find("\"unit\":\"\",\"up\":2"), std::string::npos) << "an OBJ file says neither";
+    EXPECT_TRUE(has_text(refusal("t.obj --report r.txt"), "--report: r.txt: "));
+    EXPECT_TRUE(has_text(refusal("t.obj --report r.html --count-only"), "--report: "));
+    EXPECT_TRUE(has_text(page, "\"unit\":\"\",\"up\":2")) << "an OBJ file says neither";
     ASSERT_EQ(run("detect t.obj --report r.html --up y --unit mm --output p.csv").status, 0);
-    EXPECT_NE(content("r.html").find("\"unit\":\"mm\",\"up\":1"), std::string::npos);
+    EXPECT_TRUE(has_text(content("r.html"), "\"unit\":\"mm\",\"up\":1"));
 }
 
 /// A box that lacks a triangle has no inside: the box in it is left out, but counted.
@@ -233,7 +231,7 @@ TEST_F(Stages, UndecidedPairsAreCounted) {
     };
     write_file(file("open.obj"), box("outer", 0, 9, 1, false) + box("inner", 2, 3, 9, true));
     write_file(file("closed.obj"), box("outer", 0, 9, 1, true) + box("inner", 2, 3, 9, true));
-    EXPECT_NE(run("detect open.obj").err.find("undecided   1 pair left out"), std::string::npos);
+    EXPECT_TRUE(has_text(run("detect open.obj").err, "undecided   1 pair left out"));
     EXPECT_EQ(stats("open.obj")["undecided"], 1);
     EXPECT_EQ(stats("open.obj")["pairs"], 0);
     EXPECT_EQ(stats("closed.obj")["pairs"], 1);
@@ -259,8 +257,8 @@ TEST_F(Stages, CoarseCoordinatesAreAWarning) {
         far["warnings"][0].get<std::string>().find(
             "far.ply: coordinates up to 5.41e+06 were rounded to float32, in steps of 0.5; the scene measures 1."),
         0u);
-    EXPECT_NE(run("detect far.ply --report r.html").err.find("warning     far.ply: "), std::string::npos);
-    EXPECT_NE(content("r.html").find("were rounded to float32"), std::string::npos);
+    EXPECT_TRUE(has_text(run("detect far.ply --report r.html").err, "warning     far.ply: "));
+    EXPECT_TRUE(has_text(content("r.html"), "were rounded to float32"));
     EXPECT_FALSE(stats("exact.ply --stage features").contains("warnings"));
     EXPECT_FALSE(stats("near.ply --stage features --tolerance 1e-6").contains("warnings"));
     EXPECT_EQ(stats("near.ply --stage features --tolerance 1e-7")["warnings"].size(), 1u) << "a step is 1.2e-7";
@@ -287,9 +285,8 @@ TEST_F(Stages, WhatDoesNotGoTogetherIsRefused) {
           "t.obj --unit m", "t.obj --report r.html --up x", "t.obj --report r.html --unit mile"}) {
         EXPECT_TRUE(refusal(wrong).starts_with("octopair: --")) << wrong;
     }
-    EXPECT_NE(refusal("t.obj --stage everything").find("--stage: 'everything' is not a valid value"),
-              std::string::npos);
-    EXPECT_NE(refusal("t.obj --same-parent no").find("--same-parent: 'no' is not a valid value"), std::string::npos);
+    EXPECT_TRUE(has_text(refusal("t.obj --stage everything"), "--stage: 'everything' is not a valid value"));
+    EXPECT_TRUE(has_text(refusal("t.obj --same-parent no"), "--same-parent: 'no' is not a valid value"));
     // In a set of shapes and boxes, only boxes are compared.
     EXPECT_EQ(rows("t.obj a.npy --count-only"), rows("t.obj a.npy --count-only --stage pairs"));
 }

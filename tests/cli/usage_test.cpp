@@ -14,8 +14,8 @@ TEST_F(Usage, HelpAndVersionAreAnswers) {
         EXPECT_NE(outcome.out, "") << what;
         EXPECT_EQ(outcome.err, "") << what;
     }
-    EXPECT_NE(run("generate --help").out.find("brownian"), std::string::npos);
-    EXPECT_NE(run("info").out.find("engines          local"), std::string::npos);
+    EXPECT_TRUE(has_text(run("generate --help").out, "brownian"));
+    EXPECT_TRUE(has_text(run("info").out, "engines          local"));
 }
 
 TEST_F(Usage, WrongOptionsAreRefused) {

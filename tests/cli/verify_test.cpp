@@ -31,8 +31,8 @@ protected:
 };
 
 TEST_F(DetectVerify, SaysWhatWasChecked) {
-    EXPECT_NE(verified("").find(" pairs by a second algorithm in "), std::string::npos) << verified("");
-    EXPECT_EQ(verified("").find("not checked"), std::string::npos);
+    EXPECT_TRUE(has_text(verified(""), " pairs by a second algorithm in "));
+    EXPECT_FALSE(has_text(verified(""), "not checked"));
     EXPECT_TRUE(verified("--order octal").ends_with(" (not checked: the order of the pairs)"));
     EXPECT_TRUE(verified("--limit 7").starts_with("verified    7 pairs by a second algorithm in "));
     EXPECT_TRUE(verified("--limit 7 --order octal")
@@ -40,8 +40,8 @@ TEST_F(DetectVerify, SaysWhatWasChecked) {
     EXPECT_NE(verified("--against a.npy --margin 0.001"), "");
     const Outcome counted = run("detect a.npy --verify --count-only");
     EXPECT_EQ(counted.status, 0);
-    EXPECT_NE(counted.err.find("(not checked: which pairs were counted)"), std::string::npos);
-    EXPECT_EQ(run("detect a.npy").err.find("verified"), std::string::npos);
+    EXPECT_TRUE(has_text(counted.err, "(not checked: which pairs were counted)"));
+    EXPECT_FALSE(has_text(run("detect a.npy").err, "verified"));
 }
 
 TEST_F(DetectVerify, GivesTheSameBytes) {
@@ -82,8 +82,8 @@ TEST_F(DetectVerify, TheCandidatesOfFilters) {
                                {"name": "b", "shape": {"type": "sphere", "radius": 1}}]})");
     const Outcome outcome = run("detect scene.json --stage objects --verify --output p.csv");
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const std::string_view line = "verified    1 candidates by a second algorithm, 1 collisions by certificates in ";
-    EXPECT_NE(outcome.err.find(line), std::string::npos) << outcome.err;
+    const std::string line = "verified    1 candidates by a second algorithm, 1 collisions by certificates in ";
+    EXPECT_TRUE(has_text(outcome.err, line));
     const Outcome limited = run("detect scene.json --stage objects --verify --limit 1");
     EXPECT_EQ(limited.status, 2);
     EXPECT_EQ(limited.err, "octopair: --verify: not with --limit and filters, which end the search early\n");
@@ -123,7 +123,7 @@ protected:
 TEST_F(DetectVerifyFaults, ALostPairEndsWithStatus6) {
     const Outcome lost = run_with(Fault::cell_window_end_open, "detect a.npy --verify --quiet --output p.csv");
     EXPECT_EQ(lost.status, 6) << lost.err;
-    EXPECT_NE(lost.err.find("is missing"), std::string::npos) << lost.err;
+    EXPECT_TRUE(has_text(lost.err, "is missing"));
     EXPECT_FALSE(std::filesystem::exists(file("p.csv")));
 }
 
@@ -138,8 +138,7 @@ TEST_F(DetectVerifyFaults, AWrongClassEndsWithStatus6) {
     std::filesystem::remove(file("p.csv"));
     const Outcome wrong = run_with(Fault::overlap_called_touching, arguments);
     EXPECT_EQ(wrong.status, 6) << wrong.err;
-    EXPECT_NE(wrong.err.find("pair (0, 1): its depth is 0, but it is at least 0.99999"), std::string::npos)
-        << wrong.err;
+    EXPECT_TRUE(has_text(wrong.err, "pair (0, 1): its depth is 0, but it is at least 0.99999"));
     EXPECT_FALSE(std::filesystem::exists(file("p.csv")));
 }
 #endif

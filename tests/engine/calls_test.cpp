@@ -13,9 +13,6 @@
 namespace octopair::test {
 namespace {
 
-using test::objects_of;
-using test::same_bytes;
-
 TEST(EngineCalls, ShortFormIsAscending) {
     const auto boxes = samples::make_scene("dense", 2000, 1);
     EXPECT_EQ(find_pairs(boxes), baselines::oracle_pairs(objects_of(boxes)));
@@ -91,7 +88,7 @@ TEST(EngineCalls, EnginesSideBySide) {
 }
 
 TEST(EngineCalls, SummaryAddsUp) {
-    const auto boxes = samples::make_scene("mixed", test::scaled(200'000, 10), 1);
+    const auto boxes = samples::make_scene("mixed", scaled(200'000, 10), 1);
     PairList list;
     const Summary summary = make_local_engine(2)->find_pairs(objects_of(boxes), list);
     EXPECT_EQ(summary.pairs, list.size());
@@ -108,8 +105,7 @@ TEST(EngineCalls, LimitsAroundTheNumberOfPairs) {
     const auto engine = make_local_engine(2);
     for (const Order order : {Order::ascending, Order::octal}) {
         PairList list;
-        Options options;
-        options.order = order;
+        Options options{.order = order};
         engine->find_pairs(objects_of(boxes), list, options);
         const auto all = list.to_vector();
         for (const std::uint64_t limit :
@@ -124,14 +120,11 @@ TEST(EngineCalls, LimitsAroundTheNumberOfPairs) {
 }
 
 TEST(EngineCalls, StreamsWithLimitsThroughASmallBuffer) {
-    const auto boxes = samples::make_scene("dense", test::scaled(100'000, 2), 1);
+    const auto boxes = samples::make_scene("dense", scaled(100'000, 2), 1);
     const auto engine = make_local_engine(2);
     for (const Order order : {Order::ascending, Order::octal}) {
-        Options options;
-        options.order = order;
-        PairList list;
-        engine->find_pairs(objects_of(boxes), list, options);
-        auto expected = list.to_vector();
+        Options options{.order = order};
+        auto expected = listed_pairs(*engine, objects_of(boxes), options);
         options.buffer_bytes = 1;
         options.limit = expected.size() * 2 / 3;
         expected.resize(*options.limit);
@@ -154,8 +147,7 @@ TEST(EngineCalls, StreamsWithLimitsThroughASmallBuffer) {
 
 TEST(EngineCalls, SinkIsCalledOnTheCallersThread) {
     const auto boxes = samples::make_scene("dense", 50'000, 1);
-    Options options;
-    options.buffer_bytes = 0;
+    Options options{.buffer_bytes = 0};
     for (const Order order : {Order::ascending, Order::octal}) {
         options.order = order;
         make_local_engine(4)->stream_pairs(
@@ -202,12 +194,11 @@ private:
 
 TEST(EngineCalls, ProgressNeverFallsAndEndsAtOne) {
     for (const std::string kind : {"uniform", "rods", "coincident"}) {
-        for (const std::uint64_t n : {std::uint64_t(0), std::uint64_t(100), test::scaled(2000, 2)}) {
+        for (const std::uint64_t n : {std::uint64_t(0), std::uint64_t(100), scaled(2000, 2)}) {
             const auto boxes = samples::make_scene(kind, n, 1);
             for (const Order order : {Order::ascending, Order::octal}) {
                 const auto engine = make_local_engine(2);
-                Options options;
-                options.order = order;
+                Options options{.order = order};
                 PairList list;
                 ProgressRecord listed, streamed, counted;
                 options.progress = listed.sink();
@@ -240,9 +231,8 @@ TEST(EngineCalls, InputIsNotModified) {
 
 TEST(EngineCalls, ZeroThreadsAreOnePerCore) {
     const auto boxes = samples::make_scene("dense", 5000, 1);
-    PairList list;
-    make_local_engine()->find_pairs(objects_of(boxes), list);
-    EXPECT_TRUE(same_bytes(list.to_vector(), baselines::ascending(baselines::lbvh_pairs(boxes))));
+    EXPECT_TRUE(same_bytes(listed_pairs(*make_local_engine(), objects_of(boxes)),
+                           baselines::ascending(baselines::lbvh_pairs(boxes))));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <thread>
 #include <vector>
 
@@ -53,8 +52,7 @@ unsigned call_all(Engine& engine, std::span<const Box<Real>> boxes) {
     };
     PairList list;
     for (const Order order : {Order::ascending, Order::octal}) {
-        Options options;
-        options.order = order;
+        Options options{.order = order};
         options.limit = 20 * changing_box_count;  // boxes of the whole world would form millions of pairs
         attempt([&] {
             (void)engine.find_pairs(input, list, options);
@@ -65,9 +63,7 @@ unsigned call_all(Engine& engine, std::span<const Box<Real>> boxes) {
         attempt([&] { (void)engine.stream_pairs(input, PairSink(check), options); });
     }
     attempt([&] { (void)engine.count_pairs(input); });
-    Options verified;
-    verified.limit = 100;
-    verified.verify = true;
+    Options verified{.limit = 100, .verify = true};
     attempt([&] { (void)engine.find_pairs(input, list, verified); });
     return results;
 }

@@ -9,27 +9,24 @@
 
 #include "baselines/baselines.hpp"
 #include "octopair/octopair.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
 namespace {
 
-using test::same_pairs;
 using Pairs = std::vector<Pair>;
 
 /// Finds the pairs with 1, 2 and 8 threads in both orders. Fails if a result differs from the oracle's pairs. Returns
 /// the oracle's pairs.
 Pairs found_in(const Objects& objects, double margin = 0) {
     const Pairs expected = baselines::oracle_pairs(objects, margin);
-    Options options;
-    options.margin = margin;
+    Options options{.margin = margin};
     for (const unsigned threads : {1u, 2u, 8u}) {
         for (const Order order : {Order::ascending, Order::octal}) {
             options.order = order;
-            PairList list;
-            make_local_engine(threads)->find_pairs(objects, list, options);
-            Pairs found = list.to_vector();
+            Pairs found = listed_pairs(*make_local_engine(threads), objects, options);
             if (order == Order::octal) found = baselines::ascending(std::move(found));
             EXPECT_TRUE(same_pairs(found, expected, {objects})) << threads << " threads, order " << int(order);
         }
@@ -47,14 +44,12 @@ protected:
         return {{x, y, z}, {x + dx, y + dy, z + dz}};
     }
     static Box<Real> cube(Real low, Real high) { return {{low, low, low}, {high, high, high}}; }
-    static Pairs found(const Boxes& boxes, double margin = 0) {
-        return found_in(Objects{std::span<const Box<Real>>(boxes)}, margin);
-    }
+    static Pairs found(const Boxes& boxes, double margin = 0) { return found_in(Objects{boxes}, margin); }
     static Boxes of_kind(const std::string& kind, std::uint64_t objects) {
         if constexpr (std::is_same_v<Real, float>) {
-            return test::make_boxes(kind, objects, 1);
+            return make_boxes(kind, objects, 1);
         } else {
-            return test::make_double_boxes(kind, objects, 1);
+            return make_double_boxes(kind, objects, 1);
         }
     }
 };
@@ -250,29 +245,27 @@ TYPED_TEST(Degenerate, EndlessMarginAndPadding) {
     const auto boxes = this->of_kind("uniform", 100);
     EXPECT_EQ(this->found(boxes, huge).size(), 4950u);
     const std::vector<double> padding(100, huge);
-    EXPECT_EQ(found_in({std::span<const Box<TypeParam>>(boxes), padding}, huge).size(), 4950u);
+    EXPECT_EQ(found_in({boxes, padding}, huge).size(), 4950u);
 }
 
 TYPED_TEST(Degenerate, OnePaddedObjectReachesAll) {
     const auto boxes = this->of_kind("uniform", 2000);
     std::vector<double> padding(2000, 0);
     padding[1000] = 10;
-    EXPECT_GE(found_in({std::span<const Box<TypeParam>>(boxes), padding}).size(), 1999u);
+    EXPECT_GE(found_in({boxes, padding}).size(), 1999u);
 }
 
 TEST(DegenerateMixed, PrecisionsMeetInAJoin) {
     // 0.1 in float32 is greater than 0.1 in float64. Rounding to one precision would change the pairs.
     const std::vector<Box3f> floats = {{{0, 0, 0}, {0.1f, 1, 1}}, {{0.1f, 0, 0}, {1, 1, 1}}};
     const std::vector<Box3d> doubles = {{{0.1, 0, 0}, {0.2, 1, 1}}, {{0, 0, 0}, {0.1, 1, 1}}};
-    const Objects first{std::span<const Box3f>(floats)}, second{std::span<const Box3d>(doubles)};
-    PairList list;
-    make_local_engine(2)->find_pairs(Join{first, second}, list);
-    EXPECT_EQ(list.to_vector(), (Pairs{{0, 0}, {0, 1}, {1, 0}}));
+    const Objects first{floats}, second{doubles};
+    EXPECT_EQ(listed_pairs(*make_local_engine(2), Join{first, second}), (Pairs{{0, 0}, {0, 1}, {1, 0}}));
 }
 
 TEST(DegenerateMixed, JoinWithAnEmptySet) {
-    const auto boxes = test::make_boxes("uniform", 100, 1);
-    const Objects some{std::span<const Box3f>(boxes)}, none{std::span<const Box3d>()};
+    const auto boxes = make_boxes("uniform", 100, 1);
+    const Objects some{boxes}, none{std::span<const Box3d>()};
     PairList list;
     const auto engine = make_local_engine(2);
     EXPECT_EQ(engine->find_pairs(Join{some, none}, list).pairs, 0u);
@@ -281,11 +274,10 @@ TEST(DegenerateMixed, JoinWithAnEmptySet) {
 }
 
 TEST(DegenerateMixed, JoinOfASetWithItself) {
-    const auto boxes = test::make_boxes("dense", 500, 1);
-    const Objects objects{std::span<const Box3f>(boxes)};
-    PairList list;
-    make_local_engine(2)->find_pairs(Join{objects, objects}, list);
-    EXPECT_TRUE(same_pairs(list.to_vector(), baselines::oracle_pairs_between(objects, objects), {objects, &objects}));
+    const auto boxes = make_boxes("dense", 500, 1);
+    const Objects objects{boxes};
+    const std::vector<Pair> list = listed_pairs(*make_local_engine(2), Join{objects, objects});
+    EXPECT_TRUE(same_pairs(list, baselines::oracle_pairs_between(objects, objects), {objects, &objects}));
     EXPECT_EQ(list.size(), 2 * baselines::oracle_pairs(objects).size() + 500);
 }
 
@@ -302,11 +294,9 @@ RC_GTEST_PROP(DegenerateProperty, FewBoxesOnALattice, ()) {
         }
         boxes.push_back(box);
     }
-    const Objects objects{std::span<const Box3f>(boxes)};
+    const Objects objects{boxes};
     const unsigned threads = *rc::gen::inRange(1u, 4u);
-    PairList list;
-    make_local_engine(threads)->find_pairs(objects, list);
-    RC_ASSERT(list.to_vector() == baselines::oracle_pairs(objects));
+    RC_ASSERT(listed_pairs(*make_local_engine(threads), objects) == baselines::oracle_pairs(objects));
 }
 
 }  // namespace

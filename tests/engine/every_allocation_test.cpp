@@ -18,7 +18,7 @@ protected:
         std::uint64_t count = 0;
     };
     Made made() const { return {make_local_engine(GetParam()), {}, {}, 0}; }
-    Objects objects() const { return {std::span<const Box3f>(boxes_)}; }
+    Objects objects() const { return {boxes_}; }
     std::vector<Pair> right() const { return find_pairs(boxes_); }
     static void see(Made& made, std::span<const Pair> batch) {
         made.streamed.insert(made.streamed.end(), batch.begin(), batch.end());

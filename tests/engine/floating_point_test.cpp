@@ -13,9 +13,6 @@
 namespace octopair::test {
 namespace {
 
-using test::call_in;
-using test::CallerState;
-
 /// Objects whose pairs depend on rounding, or on subnormal numbers.
 struct Asked {
     std::string name;
@@ -25,8 +22,8 @@ struct Asked {
     double margin;
 
     Objects objects() const {
-        if (wide.empty()) return {std::span<const Box3f>(narrow), padding};
-        return {std::span<const Box3d>(wide), padding};
+        if (wide.empty()) return {narrow, padding};
+        return {wide, padding};
     }
 };
 
@@ -53,11 +50,11 @@ std::vector<Asked> all_asked() {
         paddings[i] = 0.05 * double(i % 3);
         tiny[i] = DBL_TRUE_MIN * double(i % 3);
     }
-    return {{"float32", test::make_boxes("uniform", 400, 1), {}, {}, 0},
+    return {{"float32", make_boxes("uniform", 400, 1), {}, {}, 0},
             {"float32 subnormal", grid_boxes<float>(FLT_TRUE_MIN), {}, {}, 0},
             {"float32 with margin", grid_boxes<float>(0.1f), {}, {}, 0.1},
             {"float32 subnormal with margin", grid_boxes<float>(FLT_TRUE_MIN), {}, {}, double(FLT_TRUE_MIN)},
-            {"float64", {}, test::make_double_boxes("far-origin", 400, 1), {}, 0},
+            {"float64", {}, make_double_boxes("far-origin", 400, 1), {}, 0},
             {"float64 with paddings", {}, grid_boxes<double>(0.1), paddings, 0.1},
             {"float64 subnormal", {}, grid_boxes<double>(DBL_TRUE_MIN), {}, 0},
             {"float64 subnormal with paddings", {}, grid_boxes<double>(DBL_TRUE_MIN), tiny, DBL_TRUE_MIN}};
@@ -75,8 +72,7 @@ Found find_all(const Asked& asked, unsigned threads) {
     Found found;
     const auto engine = make_local_engine(threads);
     const Objects objects = asked.objects();
-    Options options;
-    options.margin = asked.margin;
+    Options options{.margin = asked.margin};
     PairList list, octal, between;
     engine->find_pairs(objects, list, options);
     engine->find_pairs(Join{objects, objects}, between, options);
@@ -116,10 +112,9 @@ TEST_P(EngineFloatingPoint, IsRestoredAfterAnError) {
     for (const unsigned threads : {1u, 2u}) {
         const auto engine = make_local_engine(threads);
         PairList pairs;
-        const auto find = [&] { call_in(GetParam(), [&] { engine->find_pairs(Objects{std::span(boxes)}, pairs); }); };
+        const auto find = [&] { call_in(GetParam(), [&] { engine->find_pairs({boxes}, pairs); }); };
         EXPECT_THROW(find(), Error) << "min > max, by a subnormal number";
-        Options options;
-        options.margin = -DBL_TRUE_MIN;
+        Options options{.margin = -DBL_TRUE_MIN};
         const auto submit = [&] {
             call_in(GetParam(), [&] { (void)engine->submit(OwnedObjects{boxes, {}}, options); });
         };
@@ -128,19 +123,19 @@ TEST_P(EngineFloatingPoint, IsRestoredAfterAnError) {
 }
 
 TEST_P(EngineFloatingPoint, IsTheDefaultInCallbacks) {
-    const std::vector<Box3d> boxes = test::make_double_boxes("uniform", 1000, 1);
+    const std::vector<Box3d> boxes = make_double_boxes("uniform", 1000, 1);
     const auto engine = make_local_engine(2);
-    const unsigned expected = test::floating_point_control() & ~0x3Fu;
+    const unsigned expected = floating_point_control() & ~0x3Fu;
     unsigned in_sink = 0, in_progress = 0;
     Options options;
-    options.progress = [&](double) { in_progress = test::floating_point_control() & ~0x3Fu; };
-    const PairSink sink = [&](auto) { in_sink = test::floating_point_control() & ~0x3Fu; };
-    call_in(GetParam(), [&] { engine->stream_pairs(Objects{std::span(boxes)}, sink, options); });
+    options.progress = [&](double) { in_progress = floating_point_control() & ~0x3Fu; };
+    const PairSink sink = [&](auto) { in_sink = floating_point_control() & ~0x3Fu; };
+    call_in(GetParam(), [&] { engine->stream_pairs({boxes}, sink, options); });
     EXPECT_EQ(in_sink, expected);
     EXPECT_EQ(in_progress, expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(States, EngineFloatingPoint, ::testing::ValuesIn(test::caller_states()),
+INSTANTIATE_TEST_SUITE_P(States, EngineFloatingPoint, ::testing::ValuesIn(caller_states()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "baselines/baselines.hpp"
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
 #include "support/hash.hpp"
 #include "support/kinds.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 class EngineHashes : public ::testing::TestWithParam<std::string> {
 protected:
-    const test::Pinned& expected() const { return test::pinned_scene(GetParam()); }
+    const Pinned& expected() const { return pinned_scene(GetParam()); }
     std::vector<Box3f> scene() const { return samples::make_scene(GetParam(), expected().objects, 1); }
 };
 
@@ -28,21 +29,20 @@ std::vector<std::string> sample_kinds() {
 TEST_P(EngineHashes, AscendingIsAsPinned) {
     const auto boxes = scene();
     for (const unsigned threads : {1u, 2u, 3u, 8u, 16u}) {
-        test::Hash hash;
-        Options options;
-        options.buffer_bytes = 64 << 20;
+        Hash hash;
+        Options options{.buffer_bytes = 64 << 20};
         const Summary summary = make_local_engine(threads)->stream_pairs(
-            Objects{std::span<const Box3f>(boxes)}, [&](std::span<const Pair> batch) { hash.add(batch); }, options);
+            Objects{boxes}, [&](std::span<const Pair> batch) { hash.add(batch); }, options);
         EXPECT_EQ(summary.pairs, expected().pairs) << threads << " threads";
         EXPECT_EQ(hash.value(), expected().pair_hash) << threads << " threads";
     }
 }
 
 TEST_P(EngineHashes, Float64IsAsPinnedToo) {
-    const auto boxes = test::widened(scene());
+    const auto boxes = widened(scene());
     PairList list;
-    make_local_engine(2)->find_pairs(Objects{std::span<const Box3d>(boxes)}, list);
-    test::Hash hash;
+    make_local_engine(2)->find_pairs({boxes}, list);
+    Hash hash;
     for (const auto chunk : list.chunks()) hash.add(chunk);
     EXPECT_EQ(hash.value(), expected().pair_hash);
 }
@@ -51,21 +51,18 @@ TEST_P(EngineHashes, OctalIsTheSameForAnyThreads) {
     const auto boxes = scene();
     std::vector<Pair> first;
     for (const unsigned threads : {1u, 2u, 3u, 8u, 16u}) {
-        Options options;
-        options.order = Order::octal;
-        PairList list;
-        make_local_engine(threads)->find_pairs(Objects{std::span<const Box3f>(boxes)}, list, options);
-        EXPECT_EQ(list.size(), expected().pairs);
-        const auto pairs = list.to_vector();
+        Options options{.order = Order::octal};
+        const std::vector<Pair> pairs = listed_pairs(*make_local_engine(threads), {boxes}, options);
+        EXPECT_EQ(pairs.size(), expected().pairs);
         if (threads == 1) first = pairs;
         EXPECT_TRUE(same_sequence(pairs, first)) << threads << " threads";
     }
-    EXPECT_EQ(test::hash_of(baselines::ascending(first)), expected().pair_hash);
+    EXPECT_EQ(hash_of(baselines::ascending(first)), expected().pair_hash);
 }
 
-INSTANTIATE_TEST_SUITE_P(, EngineHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, EngineHashes, ::testing::ValuesIn(sample_kinds()), param_name);
 
-TEST(EngineHashesTable, HasEveryKind) { EXPECT_EQ(std::size(test::pinned_scenes), sample_kinds().size()); }
+TEST(EngineHashesTable, HasEveryKind) { EXPECT_EQ(std::size(pinned_scenes), sample_kinds().size()); }
 
 }  // namespace
 }  // namespace octopair::test

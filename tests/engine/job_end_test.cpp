@@ -19,10 +19,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using test::code_of;
-using test::HeldJob;
-using test::objects_of;
-using test::touching_boxes;
 
 bool has_ended(JobState state) {
     return state == JobState::done || state == JobState::failed || state == JobState::cancelled;
@@ -107,7 +103,7 @@ TEST(JobEnds, CancellingRacesWithCompletion) {
     const auto engine = make_local_engine(1);
     const auto boxes = samples::make_scene("dense", 500, 1);
     const std::uint64_t pairs = find_pairs(boxes).size();
-    const std::uint64_t rounds = test::scaled(10'000, 5);
+    const std::uint64_t rounds = scaled(10'000, 5);
     std::uint64_t done = 0, cancelled = 0;
     for (std::uint64_t round = 0; round < rounds; ++round) {
         Job job = engine->submit(boxes);
@@ -138,7 +134,7 @@ TEST(JobEnds, CancellingRacesWithCompletion) {
 TEST(JobEnds, SeveralCancelAtOnceWhileOthersWait) {
     const auto engine = make_local_engine(1);
     const auto boxes = samples::make_scene("dense", 100, 1);
-    for (std::uint64_t round = 0; round < test::scaled(500, 10); ++round) {
+    for (std::uint64_t round = 0; round < scaled(500, 10); ++round) {
         Job job = engine->submit(boxes);
         std::array<JobState, 3> seen{};
         std::vector<std::jthread> threads;
@@ -199,7 +195,7 @@ TEST(JobEnds, AnEnginesEndCancelsItsJobs) {
 }
 
 TEST(JobEnds, AnEngineMayGoWhileOthersWaitForItsJobs) {
-    for (std::uint64_t round = 0; round < test::scaled(200, 5); ++round) {
+    for (std::uint64_t round = 0; round < scaled(200, 5); ++round) {
         auto engine = make_local_engine(1);
         std::vector<Job> jobs;
         for (int i = 0; i < 5; ++i) jobs.push_back(engine->submit(touching_boxes));

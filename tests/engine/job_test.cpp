@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <thread>
@@ -18,12 +17,6 @@
 
 namespace octopair::test {
 namespace {
-
-using test::code_of;
-using test::HeldJob;
-using test::objects_of;
-using test::same_bytes;
-using test::touching_boxes;
 
 std::vector<Box3d> as_doubles(const std::vector<Box3f>& boxes) {
     std::vector<Box3d> doubles;
@@ -66,7 +59,7 @@ void expect_as_direct(const Boxes& boxes, const std::vector<double>& padding, co
 }
 
 TEST(Jobs, FindWhatDirectCallsFind) {
-    const auto boxes = samples::make_scene("dense", test::scaled(50'000, 5), 1);
+    const auto boxes = samples::make_scene("dense", scaled(50'000, 5), 1);
     const auto padding = some_padding(boxes.size());
     for (const Order order : {Order::ascending, Order::octal}) {
         SCOPED_TRACE(int(order));
@@ -146,16 +139,14 @@ TEST(Jobs, ManyFromManyThreadsBesideDirectCalls) {
             const auto expected = find_pairs(boxes);
             std::vector<Job> jobs;
             for (int i = 0; i < 20; ++i) jobs.push_back(engine->submit(boxes));
-            PairList list;
-            engine->find_pairs({boxes}, list);
-            EXPECT_TRUE(same_bytes(list.to_vector(), expected));
+            EXPECT_TRUE(same_bytes(listed_pairs(*engine, {boxes}), expected));
             for (Job& job : jobs) EXPECT_TRUE(same_bytes(job.take_pairs().to_vector(), expected));
         });
     }
 }
 
 TEST(Jobs, ProgressRisesAndReachesBothWhoAsk) {
-    const auto boxes = samples::make_scene("uniform", test::scaled(200'000, 10), 1);
+    const auto boxes = samples::make_scene("uniform", scaled(200'000, 10), 1);
     const auto engine = make_local_engine(2);
     double told = 0;
     Job job = engine->submit(borrowed(objects_of(boxes)), {.progress = [&](double done) {
@@ -209,13 +200,7 @@ void expect_failed(Engine& engine, Job job, ErrorCode code, const std::string& w
     job.wait();
     EXPECT_EQ(job.state(), code == ErrorCode::cancelled ? JobState::cancelled : JobState::failed);
     for (int i = 0; i < 2; ++i) {
-        try {
-            (void)job.summary();
-            ADD_FAILURE() << "no error; expected: " << words;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), code) << error.what();
-            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-        }
+        expect_error(code, words, [&] { (void)job.summary(); });
         EXPECT_EQ(code_of([&] { (void)job.take_pairs(); }), code);
     }
     EXPECT_EQ(engine.submit(touching_boxes).summary().pairs, 1u);
@@ -327,10 +312,9 @@ TYPED_TEST(AllocatedBoxes, AreObjectsLikeAnyOthers) {
             std::copy_n(scene[i].min, 3, array.boxes()[i].min);
             std::copy_n(scene[i].max, 3, array.boxes()[i].max);
         }
-        PairList list;
-        engine->find_pairs({array.boxes()}, list);
+        const std::vector<Pair> list = listed_pairs(*engine, {array.boxes()});
         const auto expected = find_pairs(scene);
-        EXPECT_TRUE(same_bytes(list.to_vector(), expected));
+        EXPECT_TRUE(same_bytes(list, expected));
         EXPECT_TRUE(same_bytes(engine->submit(std::move(array)).take_pairs().to_vector(), expected));
         EXPECT_EQ(array.size(), 0u);
     }

@@ -13,11 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-using test::HeldJob;
-using test::objects_of;
-using test::touching_boxes;
 
-constexpr milliseconds answer_time(test::sanitized ? 3000 : 200);
+constexpr milliseconds answer_time(sanitized ? 3000 : 200);
 
 /// Expects `time` to return at most `answer_time`, in at least one of a few attempts: a machine busy with other work
 /// delays any thread.

@@ -3,29 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
 #include <semaphore>
 #include <vector>
 
 #include "octopair/octopair.hpp"
+#include "support/calls.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 
 /// Two boxes that touch: one pair, one batch.
 inline const std::vector<Box3f> touching_boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}};
-
-inline Objects objects_of(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes)}; }
-
-/// Returns the code of the Error that `call` throws, or nothing.
-template <typename Call>
-std::optional<ErrorCode> code_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.code();
-    }
-    return std::nullopt;
-}
 
 /// A job that runs until the test releases it. Its sink ignores stop requests.
 class HeldJob {

@@ -13,11 +13,7 @@
 namespace octopair::test {
 namespace {
 
-using test::Case;
-using test::same_bytes;
-using test::same_pairs;
-
-constexpr std::uint64_t cases_per_kind = test::scaled(300, 10);
+constexpr std::uint64_t cases_per_kind = scaled(300, 10);
 constexpr std::uint64_t min_buffer = 1 << 20;  // smaller values of Options::buffer_bytes are raised to this
 
 /// Returns the engine for a number of threads. All cases reuse the engine, so that state left by a call would show in
@@ -40,12 +36,10 @@ public:
         return second_ ? baselines::oracle_pairs_between(first_, *second_, case_.margin)
                        : baselines::oracle_pairs(first_, case_.margin);
     }
-    test::Searched searched() const { return {first_, second_ ? &*second_ : nullptr}; }
+    Searched searched() const { return {first_, second_ ? &*second_ : nullptr}; }
 
     Options options(Order order) const {
-        Options options;
-        options.order = order;
-        options.margin = case_.margin;
+        Options options{.order = order, .margin = case_.margin};
         return options;
     }
 
@@ -129,16 +123,16 @@ void check_case(const Case& a_case) {
 class EngineProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EngineProperty, AgreesWithTheOracle) {
-    const std::uint64_t cases = test::case_count(cases_per_kind);
+    const std::uint64_t cases = case_count(cases_per_kind);
     for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
-        const std::uint64_t seed = test::case_seed(GetParam(), i);
-        const Case a_case = test::make_case(GetParam(), seed);
+        const std::uint64_t seed = case_seed(GetParam(), i);
+        const Case a_case = make_case(GetParam(), seed);
         SCOPED_TRACE(a_case.describe() + "; replay with OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         check_case(a_case);
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, EngineProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, EngineProperty, ::testing::ValuesIn(all_kind_names()), param_name);
 
 }  // namespace
 }  // namespace octopair::test

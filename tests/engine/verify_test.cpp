@@ -6,35 +6,33 @@
 #include "engine/job_queue.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
-#include "support/any_call.hpp"
+#include "support/cases.hpp"
 #include "support/compare.hpp"
+#include "support/errors.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
-using test::AnyCall;
-using test::Case;
-
 class VerifiedKind : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(VerifiedKind, EveryCallPasses) {
     const auto engine = make_local_engine(2);
-    for (std::uint64_t i = 0; i < test::case_count(test::scaled(12, 2)); ++i) {
-        const Case asked = test::make_case(GetParam(), test::case_seed(GetParam(), i));
+    for (std::uint64_t i = 0; i < case_count(scaled(12, 2)); ++i) {
+        const Case asked = make_case(GetParam(), case_seed(GetParam(), i));
         for (unsigned way = 0; way < 8; ++way) {
             const AnyCall call{asked, way & 1 ? Order::octal : Order::ascending, (way & 2) != 0, (way & 4) != 0};
             AnyCall verified = call;
             verified.verify = true;
-            EXPECT_TRUE(test::same_bytes(verified.made_by(*engine), call.made_by(*engine))) << asked.describe();
+            EXPECT_TRUE(same_bytes(verified.made_by(*engine), call.made_by(*engine))) << asked.describe();
             EXPECT_EQ(verified.counted_by(*engine), call.counted_by(*engine)) << asked.describe();
         }
         ASSERT_FALSE(HasFailure()) << asked.describe();
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, VerifiedKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, VerifiedKind, ::testing::ValuesIn(all_kind_names()), param_name);
 
 /// Finds pairs with another engine, then repeats a pair, omits a pair, or reports a wrong number.
 class WrongEngine final : public Engine {
@@ -70,26 +68,19 @@ private:
 class VerifiedWrongEngine : public ::testing::TestWithParam<Order> {
 protected:
     Options verifying() const {
-        Options options;
-        options.order = GetParam();
-        options.verify = true;
+        Options options{.order = GetParam(), .verify = true};
         return options;
     }
     template <typename Call>
     void expect_failure(const std::string& words, const Call& call) const {
-        try {
-            call();
-            ADD_FAILURE() << "no error was thrown";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::engine_failed);
-            const std::string pair =
-                "pair (" + std::to_string(engine_.named.a) + ", " + std::to_string(engine_.named.b) + ")";
-            EXPECT_EQ(error.what(), "verification failed: " + (words[0] == ' ' ? pair : "") + words);
-        }
+        const std::string message = error_of(ErrorCode::engine_failed, call);
+        const std::string pair =
+            "pair (" + std::to_string(engine_.named.a) + ", " + std::to_string(engine_.named.b) + ")";
+        EXPECT_EQ(message, "verification failed: " + (words[0] == ' ' ? pair : "") + words);
     }
 
-    std::vector<Box3f> boxes_ = test::make_boxes("dense", 500, 5);
-    Objects objects_{std::span<const Box3f>(boxes_), {}};
+    std::vector<Box3f> boxes_ = make_boxes("dense", 500, 5);
+    Objects objects_{boxes_, {}};
     mutable WrongEngine engine_;
 };
 
@@ -146,14 +137,13 @@ TEST_P(VerifiedWrongEngine, FailsByItsNumbers) {
 INSTANTIATE_TEST_SUITE_P(Orders, VerifiedWrongEngine, ::testing::Values(Order::ascending, Order::octal));
 
 TEST(Verified, ShortFormAndProgress) {
-    const std::vector<Box3f> boxes = test::make_boxes("uniform", 3000, 1);
+    const std::vector<Box3f> boxes = make_boxes("uniform", 3000, 1);
     for (const bool counted : {false, true}) {
         std::vector<double> told;
-        Options options;
-        options.verify = true;
+        Options options{.verify = true};
         options.progress = [&](double done) { told.push_back(done); };
         if (counted) {
-            (void)make_local_engine(2)->count_pairs({std::span<const Box3f>(boxes), {}}, options);
+            (void)make_local_engine(2)->count_pairs({boxes, {}}, options);
         } else {
             (void)find_pairs(std::span(boxes), options);
         }
@@ -165,16 +155,10 @@ TEST(Verified, ShortFormAndProgress) {
 }
 
 TEST(Verified, RefusesABadBox) {
-    std::vector<Box3f> boxes = test::make_boxes("uniform", 3000, 1);
+    std::vector<Box3f> boxes = make_boxes("uniform", 3000, 1);
     boxes[7].min[0] = 1e9f;
-    Options options;
-    options.verify = true;
-    try {
-        (void)find_pairs(std::span<const Box3f>(boxes), options);
-        FAIL() << "no error was thrown";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    }
+    Options options{.verify = true};
+    (void)error_of(ErrorCode::bad_input, [&] { (void)find_pairs(std::span<const Box3f>(boxes), options); });
 }
 
 TEST(Verified, StopsWhenAsked) {
@@ -182,18 +166,12 @@ TEST(Verified, StopsWhenAsked) {
     std::vector<Box3f> boxes(20'000);
     for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = {{2 * float(i), 0, 0}, {2 * float(i) + 1, 1, 1}};
     std::stop_source stop;
-    Options options;
-    options.verify = true;
+    Options options{.verify = true};
     options.progress = [&](double done) {
         if (done > 0.31) stop.request_stop();
     };
     const auto engine = make_local_engine(1);
-    try {
-        (void)engine->count_pairs({std::span<const Box3f>(boxes), {}}, options, stop.get_token());
-        FAIL() << "the verification did not stop";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    }
+    (void)error_of(ErrorCode::cancelled, [&] { (void)engine->count_pairs({boxes, {}}, options, stop.get_token()); });
 }
 
 }  // namespace

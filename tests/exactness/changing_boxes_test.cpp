@@ -2,8 +2,6 @@
 // address sanitizer checks, and the search must end.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <optional>
 #include <variant>
 #include <vector>
 

@@ -12,7 +12,7 @@
 namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t min_history_objects = test::scaled(40'000, 10), max_history_objects = test::scaled(200'000, 10);
+constexpr std::uint64_t min_history_objects = scaled(40'000, 10), max_history_objects = scaled(200'000, 10);
 
 std::uint64_t object_count(std::uint64_t seed) {
     samples::RandomStream random(seed, 4);
@@ -22,20 +22,20 @@ std::uint64_t object_count(std::uint64_t seed) {
 
 TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
 #ifdef OCTOPAIR_TEST_HOOKS
-    const test::TuningScope tuning(default_tuning);  // restores the tuning that the histories change
+    const TuningScope tuning(default_tuning);  // restores the tuning that the histories change
 #endif
-    const auto families = test::family_names();
+    const auto families = family_names();
     // A fifth of the number of large scenes, because a history takes as long as five of them; in long runs as many as there are scenes. The
     // environment can set another number of cases.
     constexpr std::uint64_t long_run = 1000;
-    const std::uint64_t scenes = test::scene_range(test::SceneSize::large, 20).size();
-    const std::uint64_t count = test::case_count(scenes < long_run ? scenes / 5 : scenes);
+    const std::uint64_t scenes = scene_range(SceneSize::large, 20).size();
+    const std::uint64_t count = case_count(scenes < long_run ? scenes / 5 : scenes);
     const std::uint64_t max_tried = 4 * count;
     std::uint64_t done = 0, full_steps = 0, partial_steps = 0, failures = 0;
     for (std::uint64_t i = 0; i < max_tried && done < count; ++i) {
-        const std::uint64_t seed = test::case_seed("large histories", i);
+        const std::uint64_t seed = case_seed("large histories", i);
         const std::string& family = families[seed % families.size()];
-        test::LargeHistory history(family, object_count(seed), seed);
+        LargeHistory history(family, object_count(seed), seed);
         if (history.has_too_many_pairs()) continue;
         const auto finding = history.run();
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text << "; OCTOPAIR_TEST_SEED=" << seed
@@ -58,10 +58,10 @@ TEST(LargeHistories, AreWhatTheSecondAlgorithmFinds) {
 
 /// A scene whose full steps once gave pairs twice, so that pairs of objects that had moved away stayed in the list.
 TEST(LargeHistories, ForgetThePairsOfWhatMovesAway) {
-    const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
+    const std::vector<Box3f> boxes = long_tailed_boxes(scaled(40'000, 4), 2);
     Scene scene(SceneOptions{.threads = 2});
     std::vector<ObjectId> ids(boxes.size());
-    scene.add(Objects{std::span<const Box3f>(boxes), {}}, ids);
+    scene.add(Objects{boxes}, ids);
     const std::uint64_t all = scene.step().began.size();
     const auto expect_without = [&](std::size_t gone) {
         for (const auto chunk : scene.pairs().chunks()) {

@@ -87,10 +87,8 @@ LargeHistory::LargeHistory(const std::string& family, std::uint64_t objects, std
 }
 
 void LargeHistory::make_scenes(unsigned threads) {
-    SceneOptions options;
-    options.threads = threads;
-    options.precision = float64_ ? Precision::float64 : Precision::float32;
-    options.margin = margin_;
+    SceneOptions options{
+        .threads = threads, .precision = float64_ ? Precision::float64 : Precision::float32, .margin = margin_};
     const double failing = random_.below(2) == 0 ? 0 : 0.3;
     const auto make = [&](const char* name, StepChoice choice) {
         scenes_.push_back({name, choice, FailingScene(options, random_.below(1'000'000), failing)});
@@ -170,7 +168,7 @@ std::vector<Pair> LargeHistory::find_pairs() {
         boxes.push_back(objects_[index]->box);
         if (padded_) paddings.push_back(objects_[index]->padding);
     }
-    const Objects objects{std::span<const Box3d>(boxes), paddings};
+    const Objects objects{boxes, paddings};
     const RowSearch search({objects, nullptr, margin_}, team);
     constexpr std::uint32_t block_rows = 1024;
     std::vector<std::vector<Pair>> blocks((search.rows() + block_rows - 1) / block_rows);

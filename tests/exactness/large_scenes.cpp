@@ -11,9 +11,7 @@ namespace {
 constexpr std::uint64_t max_pairs_per_object = 60;
 
 std::uint64_t pairs_of(const Case& a_case, Engine& engine) {
-    Options options;
-    options.margin = a_case.margin;
-    options.limit = max_pairs_per_object * 1'000'000;
+    Options options{.margin = a_case.margin, .limit = max_pairs_per_object * 1'000'000};
     return engine.count_pairs(a_case.input(), options);
 }
 

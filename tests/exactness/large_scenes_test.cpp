@@ -15,22 +15,18 @@
 namespace octopair::test {
 namespace {
 
-using test::Calls;
-using test::Case;
-
-constexpr std::uint64_t usual_scenes = test::scaled(20, 10);
+constexpr std::uint64_t usual_scenes = scaled(20, 10);
 constexpr std::uint64_t large_parts = 4;  // the scenes are split, so that several processes can share them
-constexpr std::uint64_t min_objects = test::scaled(9'000, 3);
+constexpr std::uint64_t min_objects = scaled(9'000, 3);
 
 class LargeScenes : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(LargeScenes, AgreeWithTheSecondAlgorithm) {
-    const test::EngineFor engines = test::local_engines();
-    const test::SceneRange scenes =
-        test::scene_range(test::SceneSize::large, usual_scenes).part(GetParam(), large_parts);
+    const EngineFor engines = local_engines();
+    const SceneRange scenes = scene_range(SceneSize::large, usual_scenes).part(GetParam(), large_parts);
     for (std::uint64_t i = scenes.begin; i < scenes.end; ++i) {
-        const Case a_case = test::large_case(i, min_objects);
-        const auto finding = test::check_large_case(a_case, engines, i % 4 == 0 ? Calls::all : Calls::few);
+        const Case a_case = large_case(i, min_objects);
+        const auto finding = check_large_case(a_case, engines, i % 4 == 0 ? Calls::all : Calls::few);
         ASSERT_FALSE(finding) << "large case " << i << ", " << a_case.describe() << ": " << finding->check << ": "
                               << finding->text;
     }
@@ -43,22 +39,22 @@ class LongTails : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(LongTails, GiveEachPairOnce) {
     Case a_case;
-    a_case.first.boxes = test::long_tailed_boxes(40'000, GetParam());
+    a_case.first.boxes = long_tailed_boxes(40'000, GetParam());
     a_case.limit = 1'000;
     std::fill_n(a_case.threads, 3, 2);
-    const test::EngineFor engines = test::local_engines();
+    const EngineFor engines = local_engines();
     const auto check = [&] { return check_large_case(a_case, engines, Calls::all); };
     ASSERT_FALSE(check()) << check()->text;
-    a_case.second.emplace().boxes = test::long_tailed_boxes(20'000, GetParam() + 100);
+    a_case.second.emplace().boxes = long_tailed_boxes(20'000, GetParam() + 100);
     ASSERT_FALSE(check()) << check()->text;
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LongTails, ::testing::Values(2, 13, 36));
 
 TEST(ClothScenes, GiveEachPairOnce) {
-    const test::EngineFor engines = test::local_engines();
+    const EngineFor engines = local_engines();
     for (const std::uint64_t seed : {1, 20, 40}) {
-        const Case a_case = test::cloth_case(test::scaled(120'000, 4), seed);
+        const Case a_case = cloth_case(scaled(120'000, 4), seed);
         const auto finding = check_large_case(a_case, engines, Calls::few);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     }
@@ -87,26 +83,25 @@ SetOfPairs pairs_of(const std::vector<std::uint32_t>& names, std::uint32_t offse
 
 class Metamorphic : public ::testing::TestWithParam<std::string> {
 protected:
-    static constexpr std::uint64_t objects = test::scaled(1'000'000, 50);
+    static constexpr std::uint64_t objects = scaled(1'000'000, 50);
 
     Metamorphic() : boxes_(objects), names_(objects) {
         std::iota(names_.begin(), names_.end(), 0u);
         // Use the first scene of the family that is a single set of float32 boxes with few pairs.
         for (std::uint64_t seed = 1;; ++seed) {
-            Case a_case = test::make_family_case(GetParam(), objects, seed);
+            Case a_case = make_family_case(GetParam(), objects, seed);
             if (a_case.second || a_case.first.boxes.index() != 0) continue;
             boxes_ = std::get<std::vector<Box3f>>(std::move(a_case.first.boxes));
             names_.resize(boxes_.size());
             std::iota(names_.begin(), names_.end(), 0u);
-            Options few;
-            few.limit = 30 * boxes_.size();
-            if (engine_->count_pairs(Objects{std::span<const Box3f>(boxes_), {}}, few) < *few.limit) break;
+            Options few{.limit = 30 * boxes_.size()};
+            if (engine_->count_pairs({boxes_}, few) < *few.limit) break;
         }
     }
 
     SetOfPairs pairs_of_all(const std::vector<Box3f>& boxes, const std::vector<std::uint32_t>& names) const {
         return pairs_of(names, 0, [&](const PairSink& sink) {
-            (void)engine_->stream_pairs(Objects{std::span<const Box3f>(boxes), {}}, sink, {.order = Order::octal});
+            (void)engine_->stream_pairs({boxes}, sink, {.order = Order::octal});
         });
     }
 
@@ -135,14 +130,13 @@ TEST_P(Metamorphic, PermutedMirroredScaledAndCut) {
     const std::size_t half = boxes_.size() / 3;
     const std::span<const Box3f> first = std::span(boxes_).first(half), second = std::span(boxes_).subspan(half);
     const auto part = [&](const auto& find, std::uint32_t offset) { return pairs_of(names_, offset, find); };
-    SetOfPairs sum = part([&](const PairSink& sink) { (void)engine_->stream_pairs(Objects{first, {}}, sink); }, 0);
+    SetOfPairs sum = part([&](const PairSink& sink) { (void)engine_->stream_pairs({first}, sink); }, 0);
     std::vector<std::uint32_t> later(names_.begin() + std::ptrdiff_t(half), names_.end());
-    const SetOfPairs within_second = pairs_of(later, 0, [&](const PairSink& sink) {
-        (void)engine_->stream_pairs(Objects{second, {}}, sink);
-    });
+    const SetOfPairs within_second =
+        pairs_of(later, 0, [&](const PairSink& sink) { (void)engine_->stream_pairs({second}, sink); });
     const SetOfPairs between = part(
         [&](const PairSink& sink) {
-            (void)engine_->stream_pairs(Join{Objects{first, {}}, Objects{second, {}}}, sink);
+            (void)engine_->stream_pairs(Join{Objects{first}, Objects{second}}, sink);
         },
         std::uint32_t(half));
     sum.count += within_second.count + between.count;

@@ -27,13 +27,13 @@ class PlantedFault : public ::testing::TestWithParam<Planted> {};
 TEST_P(PlantedFault, IsFound) {
     constexpr std::uint64_t most = 1000;  // a tenth of the scenes of SmallScenes
     constexpr std::uint64_t enough = 5;
-    const test::EngineFor engines = test::local_engines();
+    const EngineFor engines = local_engines();
     std::map<std::string, std::uint64_t> found_by;
     std::uint64_t first = most, findings = 0;
     {
-        const test::FaultScope planted(GetParam().fault);
+        const FaultScope planted(GetParam().fault);
         for (std::uint64_t seed = 0; seed < most && findings < enough; ++seed) {
-            const auto finding = test::check_small_cases({seed, seed + 1}, engines);
+            const auto finding = check_small_cases({seed, seed + 1}, engines);
             if (!finding) continue;
             if (findings++ == 0) first = seed;
             ++found_by[finding->check];

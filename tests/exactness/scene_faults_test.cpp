@@ -12,6 +12,7 @@
 #include "exactness/tiny_tuning.hpp"
 #include "samples/random.hpp"
 #include "scene/model.hpp"
+#include "support/errors.hpp"
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
@@ -34,7 +35,7 @@ class TestScene {
 public:
     explicit TestScene(std::uint64_t seed) : random_(seed, 0), ids_(objects), scene_({.threads = 1}) {
         for (std::uint64_t i = 0; i < objects; ++i) boxes_.push_back(random_box(random_));
-        scene_.add(Objects{std::span<const Box3f>(boxes_), {}}, ids_);
+        scene_.add(Objects{boxes_}, ids_);
     }
 
     void move(std::uint64_t count) {
@@ -50,7 +51,7 @@ public:
     Scene& scene() { return scene_; }
     const std::vector<Pair>& last() const { return last_; }
     std::vector<Pair> true_pairs() const {
-        test::Model model;
+        Model model;
         for (std::uint32_t i = 0; i < objects; ++i) model.objects[i] = {ids_[i], wide(boxes_[i]), 0, {}};
         return model.pairs();
     }
@@ -73,26 +74,16 @@ public:
     /// Makes a step with a fault and reads its pairs. Returns the message of the thrown error, empty if no error
     /// was thrown.
     std::string faulty_step(Fault fault) {
-        const test::FaultScope planted(fault);
-        try {
+        const FaultScope planted(fault);
+        return error_if_any(ErrorCode::engine_failed, [&] {
             (void)scene_.step();
             last_ = scene_.pairs().to_vector();
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::engine_failed);
-            return error.what();
-        }
-        return {};
+        });
     }
 
     /// Returns the message of the error of Scene::verify(), empty if there is none.
     std::string fault_that_verify_finds() {
-        try {
-            (void)scene_.verify();
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::engine_failed);
-            return error.what();
-        }
-        return {};
+        return error_if_any(ErrorCode::engine_failed, [&] { (void)scene_.verify(); });
     }
 
 private:
@@ -104,7 +95,7 @@ private:
 };
 
 Tuning tuning_with(std::uint64_t seed, StepChoice step) {
-    Tuning tuning = test::tiny_tuning(seed);
+    Tuning tuning = tiny_tuning(seed);
     tuning.scene = default_tuning.scene;
     tuning.scene.step = step;
     return tuning;
@@ -116,14 +107,14 @@ TEST_P(DoubledPairs, AreAnErrorThatChangesNothing) {
     int errors = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const test::TuningScope tiny(tuning_with(seed, seed % 2 == 0 ? StepChoice::full : StepChoice::incremental));
+        const TuningScope tiny(tuning_with(seed, seed % 2 == 0 ? StepChoice::full : StepChoice::incremental));
         TestScene test(seed);
         test.check_step();
         test.move(objects);
         const std::string message = test.faulty_step(GetParam());
         if (!message.empty()) {
             ++errors;
-            EXPECT_NE(message.find(" twice"), std::string::npos) << message;
+            EXPECT_TRUE(has_text(message, " twice"));
             EXPECT_EQ(test.scene().pairs().to_vector(), test.last());
         } else {
             EXPECT_EQ(test.last(), test.true_pairs());
@@ -158,7 +149,7 @@ TEST(MissingPairs, OfAFullStepComeBackWithTheNext) {
     int missing = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const test::TuningScope tiny(tuning_with(seed, StepChoice::full));
+        const TuningScope tiny(tuning_with(seed, StepChoice::full));
         TestScene test(seed);
         test.check_step();
         test.move(objects);
@@ -179,7 +170,7 @@ TEST(MissingPairs, ThatEndAreAnErrorUntilTheNextFullStep) {
     int errors = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        const test::TuningScope tiny(tuning_with(seed, StepChoice::incremental));
+        const TuningScope tiny(tuning_with(seed, StepChoice::incremental));
         TestScene test(seed);
         ASSERT_EQ(test.faulty_step(Fault::window_end_open), "");
         const std::vector<Pair> all = test.true_pairs();
@@ -188,7 +179,7 @@ TEST(MissingPairs, ThatEndAreAnErrorUntilTheNextFullStep) {
         ++errors;
         test.move_away(pair->a);
         std::string message = test.faulty_step(Fault::none);
-        EXPECT_NE(message.find("ended"), std::string::npos) << message;
+        EXPECT_TRUE(has_text(message, "ended"));
         message = test.faulty_step(Fault::none);
         EXPECT_EQ(message, "");
         EXPECT_EQ(test.last(), test.true_pairs());

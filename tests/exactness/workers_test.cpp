@@ -27,7 +27,7 @@ const int shared_hooks = [] {
 
 /// Returns a local engine for 1 thread, otherwise an engine with as many worker processes. So tests compare the octal
 /// order of both engines.
-test::EngineFor workers() {
+EngineFor workers() {
     std::shared_ptr<Engine> local = make_local_engine(2);
     std::shared_ptr<Engine> two = make_process_engine(2);
     std::shared_ptr<Engine> three = make_process_engine(3);
@@ -35,40 +35,40 @@ test::EngineFor workers() {
 }
 
 TEST(LargeScenesOnWorkers, GiveEachPairOnce) {
-    const test::EngineFor engines = workers();
-    test::Case long_tails;
-    long_tails.first.boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
-    for (test::Case a_case : {long_tails, test::cloth_case(test::scaled(120'000, 8), 1)}) {
+    const EngineFor engines = workers();
+    Case long_tails;
+    long_tails.first.boxes = long_tailed_boxes(scaled(40'000, 4), 2);
+    for (Case a_case : {long_tails, cloth_case(scaled(120'000, 8), 1)}) {
         a_case.threads[0] = 2, a_case.threads[1] = 3;
-        const auto finding = test::check_large_case(a_case, engines, test::Calls::few);
+        const auto finding = check_large_case(a_case, engines, Calls::few);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     }
 }
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
-constexpr std::uint64_t usual = test::scaled(300, 10);
+constexpr std::uint64_t usual = scaled(300, 10);
 
 class SmallScenesOnWorkers : public ::testing::Test {
 protected:
     /// Returns fewer scenes than the tests of a single process, by a constant factor.
-    static test::SceneRange seeds(std::uint64_t scenes) {
-        const test::SceneRange all = test::scene_range(test::SceneSize::small, 10'000);
+    static SceneRange seeds(std::uint64_t scenes) {
+        const SceneRange all = scene_range(SceneSize::small, 10'000);
         return all.size() == 1 ? all : all.part(0, 10'000 / scenes);
     }
-    static void check(std::uint64_t scenes, const test::EngineFor& engines) {
+    static void check(std::uint64_t scenes, const EngineFor& engines) {
         ASSERT_GE(shared_hooks, 0);
-        const auto finding = test::check_small_cases(seeds(scenes), engines);
+        const auto finding = check_small_cases(seeds(scenes), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
     }
 };
 
 TEST_F(SmallScenesOnWorkers, AreWhatBruteForceFinds) {
     check(usual, workers());
-    if (test::sanitized || seeds(usual).size() < usual) return;
+    if (sanitized || seeds(usual).size() < usual) return;
     using enum Path;
-    EXPECT_EQ(test::paths_not_taken({nested_once, nested_shared, large_octant, buffer_over, window, region_kept,
-                                     region_copied, ring_wrapped, bucket_sorted, bucket_split}),
+    EXPECT_EQ(paths_not_taken({nested_once, nested_shared, large_octant, buffer_over, window, region_kept,
+                               region_copied, ring_wrapped, bucket_sorted, bucket_split}),
               "");
 }
 

@@ -1,28 +1,22 @@
 // Fuzzes the parser of addresses. An accepted address, written as text, parses to the same address.
 #include <cstdint>
-#include <cstdlib>
 
-#include "octopair/error.hpp"
+#include "fuzz/require.hpp"
 #include "service/protocol/address.hpp"
 
 namespace {
 
 using namespace octopair;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::require;
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    try {
+    fuzz::require_clear_errors({.codes = {ErrorCode::usage}, .one_line = false}, [&] {
         const service::Address address = service::parse_address({reinterpret_cast<const char*>(bytes), size});
         require(address.is_unix() ? address.path.size() <= 107 : !address.host.empty() && !address.port.empty());
         const service::Address again = service::parse_address(address.text());
         require(again.path == address.path && again.host == address.host && again.port == address.port);
-    } catch (const Error& error) {
-        require(error.code() == ErrorCode::usage);
-    }
+    });
     return 0;
 }

@@ -1,14 +1,13 @@
 // Fuzzes the client's reader of results, once into a list and once into a sink. Both get the same pairs, and an
 // incomplete answer is refused. The input is a sequence of messages, each after its length in two bytes. The highest
 // bit of the length starts another attempt.
-#include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fuzz/require.hpp"
 #include "octopair/error.hpp"
 #include "service/client/received.hpp"
 #include "service/protocol/messages.hpp"
@@ -17,10 +16,7 @@ namespace {
 
 using namespace octopair;
 using namespace octopair::service;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::require;
 
 /// Splits a message into pieces, as the network may deliver it.
 grpc::ByteBuffer in_pieces(std::string_view bytes) {

@@ -1,19 +1,13 @@
 // Fuzzes the reader of the text of IFC files.
 #include <cstdint>
-#include <cstdlib>
 
+#include "fuzz/require.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 
-namespace {
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
-
-}  // namespace
+using namespace octopair;
+using fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    using namespace octopair;
     const std::string_view text(reinterpret_cast<const char*>(bytes), size);
     std::size_t all = 0;
     const io::IfcText read = io::read_ifc_text(text);

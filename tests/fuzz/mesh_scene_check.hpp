@@ -4,16 +4,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <variant>
 
+#include "fuzz/require.hpp"
 #include "io/loaded_scene.hpp"
 
-namespace octopair::test {
-
-inline void require(bool holds) {
-    if (!holds) std::abort();
-}
+namespace octopair::fuzz {
 
 /// Requires the arrays of a mesh scene to be consistent.
 inline void check_mesh_scene(const io::LoadedScene& scene) {
@@ -34,4 +30,4 @@ inline void check_mesh_scene(const io::LoadedScene& scene) {
     }
 }
 
-}  // namespace octopair::test
+}  // namespace octopair::fuzz

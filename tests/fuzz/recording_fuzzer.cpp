@@ -1,22 +1,18 @@
 // Fuzzes the reader of recordings, and applies accepted calls to a scene. Random bytes have no valid checksums. The
 // fuzzer tries the bytes unchanged and with corrected checksums, so that payloads are reached.
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
 
+#include "fuzz/require.hpp"
 #include "fuzz/right_checksums.hpp"
-#include "octopair/error.hpp"
 #include "scene/recording/replay.hpp"
 
 namespace {
 
 using namespace octopair;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::require;
 
 RecordingSource source_of(const std::string& bytes) {
     const auto read = [&bytes](std::uint64_t offset, std::span<std::byte> out) {
@@ -27,17 +23,13 @@ RecordingSource source_of(const std::string& bytes) {
 }
 
 void try_replay(const std::string& bytes) {
-    try {
+    fuzz::require_clear_errors({.begin = "f.rec: ", .codes = {ErrorCode::bad_input, ErrorCode::engine_failed}}, [&] {
         RecordingReader reader(source_of(bytes));
         const ReplayReport report = replay(reader, {1, true});
         require(report.steps == report.seconds.size() && report.full_steps <= report.steps);
         require(report.pairs == report.began - report.ended);
         require(!report.cut || report.calls + report.steps < bytes.size() / record_overhead);
-    } catch (const Error& error) {
-        require(error.code() == ErrorCode::bad_input || error.code() == ErrorCode::engine_failed);
-        require(std::string_view(error.what()).starts_with("f.rec: "));
-        require(std::string_view(error.what()).find('\n') == std::string_view::npos);
-    }
+    });
 }
 
 }  // namespace

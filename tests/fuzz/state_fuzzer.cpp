@@ -1,22 +1,18 @@
 // Fuzzes the readers of the state folder's files. Accepted content stays the same when it is written again. Random
 // bytes have no valid checksums. The fuzzer tries the bytes unchanged and as parts of files with valid checksums.
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
 
-#include "octopair/error.hpp"
+#include "fuzz/require.hpp"
 #include "service/server/store/state_format.hpp"
 
 namespace {
 
 using namespace octopair;
 using namespace octopair::service;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::require;
 
 FileBytes file_of(const std::string& bytes) {
     return {"f.job", bytes.size(), [&bytes](std::uint64_t offset, std::span<std::byte> out) {
@@ -27,13 +23,7 @@ FileBytes file_of(const std::string& bytes) {
 
 template <typename Read>
 void try_reading(const Read& read) {
-    try {
-        read();
-    } catch (const Error& error) {
-        require(error.code() == ErrorCode::io_failed);
-        require(std::string_view(error.what()).starts_with("f.job: "));
-        require(std::string_view(error.what()).find('\n') == std::string_view::npos);
-    }
+    fuzz::require_clear_errors({.begin = "f.job: ", .codes = {ErrorCode::io_failed}}, [&] { read(); });
 }
 
 void try_job(const std::string& bytes) {

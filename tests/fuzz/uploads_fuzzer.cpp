@@ -3,12 +3,12 @@
 // with the tried bytes.
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fuzz/require.hpp"
 #include "fuzz/right_checksums.hpp"
 #include "octopair/error.hpp"
 #include "service/server/scenes/uploaded_calls.hpp"
@@ -16,10 +16,7 @@
 namespace {
 
 using namespace octopair;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::require;
 
 void make(Scene& scene, const RecordedCall& call) {
     std::vector<ObjectId> ids(std::size_t(call.objects.size()));

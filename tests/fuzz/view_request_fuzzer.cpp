@@ -1,27 +1,19 @@
 // Fuzzes what the server of a page reads from a request: the address, and the parameters of tables and regions.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
-#include "octopair/error.hpp"
+#include "fuzz/require.hpp"
 #include "viewer/scene/frame_answers.hpp"
 
 namespace {
 
 using namespace octopair;
-
-void require(bool holds) {
-    if (!holds) std::abort();
-}
+using fuzz::require;
 
 /// Runs a parser, which may refuse its input as bad.
 template <typename Parse>
 void try_to(const Parse& parse) {
-    try {
-        parse();
-    } catch (const Error& error) {
-        require(error.code() == ErrorCode::bad_input);
-    }
+    fuzz::require_clear_errors({.one_line = false}, [&] { parse(); });
 }
 
 }  // namespace

@@ -82,12 +82,11 @@ TEST(EveryAllocationOfARecording, MayFail) {
     const TemporaryDirectory directory;
     const std::string path = directory.file("r.rec");
     {
-        SceneOptions options;
-        options.recording = path;
+        SceneOptions options{.recording = path};
         Scene scene(options);
         const std::vector<Box3f> boxes(40, Box3f{{0, 0, 0}, {1, 1, 1}});
         std::vector<ObjectId> ids(boxes.size());
-        scene.add({std::span<const Box3f>(boxes)}, ids);
+        scene.add({boxes}, ids);
         scene.step();
         scene.remove(std::span(ids).first(3));
         scene.step();

@@ -205,9 +205,7 @@ TEST(FaceCutter, LargeFacesStayClosed) {
 }
 
 TEST(FaceCutter, LargeFacesCanBeStopped) {
-    std::stop_source source;
-    source.request_stop();
-    const std::stop_token stop = source.get_token();
+    const std::stop_token stop = requested_stop();
     for (const LargeOutline& large : large_outlines(100000)) {
         io::FaceCutter cutter(stop);
         EXPECT_NE(error_of(ErrorCode::cancelled, [&] { (void)cutter.cut(large.places); }), "") << large.name;

@@ -1,7 +1,6 @@
 // Tests the reader of NumPy's arrays with random files, in all layouts of the format, whose content is known.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>

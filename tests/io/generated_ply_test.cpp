@@ -1,7 +1,6 @@
 // Tests the reader of PLY with random files, in all encodings and spellings of the format, whose content is known.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <bit>
 #include <string>
 #include <vector>

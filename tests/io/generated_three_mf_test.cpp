@@ -1,7 +1,6 @@
 // Tests the reader of 3MF with random files, in all spellings of the format, whose content is known.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>

@@ -5,6 +5,7 @@
 
 #include "io/gltf_reading.hpp"
 #include "io/meshes/uri.hpp"
+#include "support/calls.hpp"
 
 namespace octopair::test {
 namespace {
@@ -318,18 +319,15 @@ TEST(GltfData, ASmallFileCannotFillTheMemory) {
 }
 
 TEST(GltfData, StopsSoon) {
-    std::stop_source stopped;
-    stopped.request_stop();
     GltfBuilder builder;
     builder.node({{"mesh", builder.triangle()}});
     for (const std::size_t length : {0, 70000}) {  // stops after the JSON, and within it
         builder.root["extras"] = std::string(length, 'x');
-        EXPECT_NE(
-            error_of(ErrorCode::cancelled,
-                     [&] { (void)io::parse_gltf_scene("f", as_buffer(builder.text()), {}, stopped.get_token()); }),
-            "");
+        EXPECT_NE(error_of(ErrorCode::cancelled,
+                           [&] { (void)io::parse_gltf_scene("f", as_buffer(builder.text()), {}, requested_stop()); }),
+                  "");
     }
-    EXPECT_NE(error_of(ErrorCode::cancelled, [&] { (void)io::decoded_base64("AAAA", stopped.get_token()); }), "");
+    EXPECT_NE(error_of(ErrorCode::cancelled, [&] { (void)io::decoded_base64("AAAA", requested_stop()); }), "");
 }
 
 }  // namespace

@@ -27,9 +27,7 @@ inline std::string refusal_of(const std::string& text) {
 }
 inline std::string refusal_of(const GltfBuilder& builder) { return refusal_of(builder.text()); }
 
-inline void expect_part(const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-}
+inline void expect_part(const std::string& text, const std::string& part) { EXPECT_TRUE(has_text(text, part)); }
 inline void expect_refusal(const GltfBuilder& builder, const std::string& part) {
     expect_part(refusal_of(builder), part);
 }

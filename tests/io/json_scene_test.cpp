@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "io/scene_reader.hpp"
 #include "io/temporary.hpp"
 

@@ -13,6 +13,7 @@
 #include "io/scene_reader.hpp"
 #include "io/temporary.hpp"
 #include "octopair/error.hpp"
+#include "support/calls.hpp"
 
 namespace octopair::test {
 namespace {
@@ -54,7 +55,7 @@ TEST(PlainMesh, SurplusValuesOfPlyAreTold) {
     const std::string text = head + "0 0 0 7\n1 0 0\n0 1 0\n3 0 1 2\n";
     EXPECT_EQ(io::parse_ply({text, "a.ply", never, {}, &warnings}).vertices.size(), 3u);
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].find("line 10 has more values"), std::string::npos) << warnings[0];
+    EXPECT_TRUE(has_text(warnings[0], "line 10 has more values"));
 }
 
 TEST(PlainMesh, LinesAndPointsOfObjAreNoSurface) {
@@ -355,11 +356,9 @@ TEST(PlainMesh, FacesAreCutWithinTheirOutline) {
 }
 
 TEST(PlainMesh, CuttingCanBeStopped) {
-    std::stop_source source;
-    source.request_stop();
     io::CrossingFaces crossing;
     const io::PlainMesh mesh = off("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
-    (void)error_of(ErrorCode::cancelled, [&] { (void)io::cut_into_triangles(mesh, crossing, source.get_token()); });
+    (void)error_of(ErrorCode::cancelled, [&] { (void)io::cut_into_triangles(mesh, crossing, requested_stop()); });
 }
 
 TEST(PlainMesh, WorkAfterTheTextCanBeStopped) {

@@ -1,7 +1,6 @@
 #include "io/random_outline.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <sstream>
 #include <utility>

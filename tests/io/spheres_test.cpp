@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/temporary.hpp"
+#include "support/calls.hpp"
 
 namespace octopair::test {
 namespace {
@@ -92,11 +93,9 @@ TEST(Spheres, DenormalsAndEnds) {
 }
 
 TEST(Spheres, ConversionCanBeStopped) {
-    std::stop_source source;
-    source.request_stop();
     const std::vector<io::Sphere<float>> spheres = {{{0, 0, 0}, 1}};
     std::vector<Box3f> boxes(1);
-    const io::SpherePlace place{"f.npy", 0, source.get_token()};
+    const io::SpherePlace place{"f.npy", 0, requested_stop()};
     (void)error_of(ErrorCode::cancelled, [&] { io::boxes_of_spheres<float>(spheres, boxes, place); });
 }
 

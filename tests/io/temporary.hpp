@@ -1,22 +1,19 @@
-// Helpers for tests of files: a temporary directory, file contents, and the message of a refusal.
+// Helpers for tests of files: a temporary directory and file contents.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "io/boxes/npy_header.hpp"
-#include "octopair/error.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 
@@ -71,19 +68,6 @@ std::string bytes_of(const std::vector<T>& values) {
 template <typename T>
 std::string npy_of(io::NpyType type, const std::vector<std::uint64_t>& shape, const std::vector<T>& values) {
     return io::make_npy_header(type, shape) + bytes_of(values);
-}
-
-/// Returns the message of the Error that `call` throws. Fails if `call` throws no Error, or an Error with another code.
-template <typename Call>
-std::string error_of(ErrorCode code, const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(int(error.code()), int(code)) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "nothing was thrown";
-    return {};
 }
 
 }  // namespace octopair::test

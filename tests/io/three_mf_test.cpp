@@ -7,6 +7,7 @@
 #include "io/formats/format_choice.hpp"
 #include "io/scene_reader.hpp"
 #include "io/three_mf_reading.hpp"
+#include "support/calls.hpp"
 
 namespace octopair::test {
 namespace {
@@ -25,9 +26,7 @@ std::string one_object(const std::string& items, const std::string& attributes =
     return package_of(model_text(object_text(1, tetrahedron()), items, attributes));
 }
 
-void expect_in(const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-}
+void expect_in(const std::string& text, const std::string& part) { EXPECT_TRUE(has_text(text, part)); }
 
 /// Expects that a start part is refused with a message that begins with its line and has a part.
 void expect_model_refusal(const std::string& text, const std::string& part) {
@@ -380,13 +379,11 @@ TEST(ThreeMf, DeepComponentsNeedNoStack) {
 }
 
 TEST(ThreeMf, AStopRequestIsHeeded) {
-    std::stop_source stopped;
-    stopped.request_stop();
     const std::string file = one_object("<item objectid='1'/>");
     Buffer<std::byte> bytes{file.size()};
     std::memcpy(bytes.data(), file.data(), file.size());
     EXPECT_EQ(error_of(ErrorCode::cancelled,
-                       [&] { (void)io::parse_three_mf_scene("f", std::move(bytes), {}, stopped.get_token()); }),
+                       [&] { (void)io::parse_three_mf_scene("f", std::move(bytes), {}, requested_stop()); }),
               "interrupted");
 }
 

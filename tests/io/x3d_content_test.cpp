@@ -100,8 +100,7 @@ TEST(X3dContent, FilesOfInlineNodesAreRead) {
         x3d_of(
             "<Transform translation='5 0 0'><Inline url='\"http://x.invalid/part.x3d\" \"part.x3d\"'/></Transform>"));
     const auto read = [&] { return io::read_scene(path, {io::MeshObjects::node}); };
-    EXPECT_NE(error_of(ErrorCode::bad_input, read).find("line 3: no file that the Inline node names"),
-              std::string::npos);
+    expect_error(ErrorCode::bad_input, "line 3: no file that the Inline node names", read);
     write_file(directory.file("part.x3d"), x3d_of("<Group/>" + at_x(10, "A")));
     const io::LoadedScene scene = read();
     ASSERT_EQ(scene.objects, 1u);

@@ -9,19 +9,16 @@
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
-#include "support/error_place.hpp"
 #include "support/reentry.hpp"
 
 namespace octopair::test {
 namespace {
 
-using test::own_rank;
-using test::rank_count;
-
 class RankErrors : public ::testing::Test {
 protected:
-    Objects own() const { return {std::span<const Box3f>(own_), {}}; }
+    Objects own() const { return {own_, {}}; }
     /// Returns the Error that a call throws on this rank, or nothing.
     template <typename Call>
     static std::optional<Error> error_of(const Call& call) {
@@ -35,82 +32,71 @@ protected:
     template <typename Call>
     void expect_on_all(ErrorCode code, const std::string& message, const Call& call) {
         const auto error = error_of(call);
-        ASSERT_TRUE(test::on_all(error.has_value()));
+        ASSERT_TRUE(on_all(error.has_value()));
         EXPECT_EQ(int(error->code()), int(code)) << error->what();
-        EXPECT_NE(std::string(error->what()).find(message), std::string::npos) << error->what();
+        EXPECT_TRUE(has_text(error->what(), message));
         expect_usable();
     }
-    void expect_usable() {
-        PairList list;
-        (void)engine_->find_pairs(own(), list);
-        EXPECT_TRUE(test::same_bytes(test::all_pieces(list.to_vector()), expected_));
-    }
+    void expect_usable() { EXPECT_TRUE(same_bytes(all_pieces(listed_pairs(*engine_, own())), expected_)); }
     bool last() const { return own_rank() + 1 == rank_count(); }
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
     const std::vector<Pair> expected_ = find_pairs(boxes_);
-    std::vector<Box3f> own_ = test::slice(boxes_, test::Spread::even);
+    std::vector<Box3f> own_ = slice(boxes_, Spread::even);
     const std::unique_ptr<Engine> engine_ = make_mpi_engine(MPI_COMM_WORLD);
 };
 
 TEST_F(RankErrors, NameTheFirstBadBoxOfAllRanks) {
-    const std::size_t begin = test::own_slice(boxes_.size(), test::Spread::even).begin;
+    const std::size_t begin = own_slice(boxes_.size(), Spread::even).begin;
     std::vector<Box3f> bad = own_;
     // Two bad boxes on each rank. The first of all is on rank 0.
     bad[17].max[1] = std::numeric_limits<float>::quiet_NaN();
     bad[12].min[0] = bad[12].max[0] + 1;
     PairList list;
-    expect_on_all(ErrorCode::bad_input, "object 12: min x", [&] {
-        (void)engine_->find_pairs({std::span<const Box3f>(bad), {}}, list);
-    });
+    expect_on_all(ErrorCode::bad_input, "object 12: min x", [&] { (void)engine_->find_pairs({bad, {}}, list); });
     EXPECT_EQ(list.size(), 0u);
     // Bad boxes on the last rank only: the message has the global index.
     const std::vector<Box3f>& some = last() ? bad : own_;
-    const std::size_t of_last = std::size_t(test::largest(last() ? begin + 12 : 0));
+    const std::size_t of_last = std::size_t(largest(last() ? begin + 12 : 0));
     expect_on_all(ErrorCode::bad_input, "object " + std::to_string(of_last) + ": min x", [&] {
-        (void)engine_->count_pairs({std::span<const Box3f>(some), {}});
+        (void)engine_->count_pairs({some, {}});
     });
     expect_on_all(ErrorCode::bad_input, "second set: object " + std::to_string(of_last) + ": min x", [&] {
-        (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
+        (void)engine_->count_pairs(Join{own(), {some, {}}});
     });
-    test::expect_place([&] { (void)engine_->count_pairs({std::span<const Box3f>(some), {}}); }, of_last, 0);
-    test::expect_place(
-        [&] {
-            (void)engine_->count_pairs(Join{own(), {std::span<const Box3f>(some), {}}});
-        },
-        of_last, 1);
+    expect_place([&] { (void)engine_->count_pairs({some, {}}); }, of_last, 0);
+    expect_place([&] { (void)engine_->count_pairs(Join{own(), {some, {}}}); }, of_last, 1);
 }
 
 TEST_F(RankErrors, RefuseCallsInTheirSinks) {
     bool tried = false;
     (void)engine_->stream_pairs(own(), [&](std::span<const Pair>) {
-        if (!std::exchange(tried, true)) test::expect_calls_refused(*engine_);
+        if (!std::exchange(tried, true)) expect_calls_refused(*engine_);
     });
-    EXPECT_GT(test::largest(tried ? 1 : 0), 0u);
+    EXPECT_GT(largest(tried ? 1 : 0), 0u);
     EXPECT_EQ(engine_->count_pairs(own()), engine_->count_pairs(own()));
 }
 
 /// With several threads, a progress function runs on other threads than that of the call, too.
 TEST_F(RankErrors, RefuseCallsInTheirProgressFunctions) {
     const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = 4});
-    const std::vector<Box3f> boxes = test::slice(samples::make_scene("dense", 40'000, 1), test::Spread::even);
-    const Objects input{std::span(boxes), {}};
+    const std::vector<Box3f> boxes = slice(samples::make_scene("dense", 40'000, 1), Spread::even);
+    const Objects input{boxes};
     std::atomic<int> reports = 0;
     const auto try_all = [&](double) {
         ++reports;
-        test::expect_calls_refused(*engine);
+        expect_calls_refused(*engine);
         std::vector<Pair64> wide;
         PairList gathered;
-        test::expect_deadlock_refused([&] { (void)find_pairs64(*engine, IndexedObjects{input, {}}, wide); });
-        test::expect_deadlock_refused([&] { gather_pairs(*engine, gathered); });
+        expect_deadlock_refused([&] { (void)find_pairs64(*engine, IndexedObjects{input, {}}, wide); });
+        expect_deadlock_refused([&] { gather_pairs(*engine, gathered); });
     };
-    PairList pairs;
-    (void)engine->find_pairs(input, pairs, {.progress = try_all});
+    const std::vector<Pair> pairs = listed_pairs(*engine, input, {.progress = try_all});
     EXPECT_GT(reports.exchange(0), 0);
     std::vector<Pair64> found;
     (void)find_pairs64(*engine, IndexedObjects{input, {}}, found, {.progress = try_all});
     EXPECT_GT(reports, 0);
-    EXPECT_EQ(test::all_pieces(found).size(), test::all_pieces(pairs.to_vector()).size());
+    EXPECT_EQ(all_pieces(found).size(), all_pieces(pairs).size());
 }
 
 TEST_F(RankErrors, RefuseToVerify) {
@@ -123,9 +109,7 @@ TEST_F(RankErrors, RefuseToVerify) {
 
 TEST_F(RankErrors, TellOfPaddingsThatOneRankGaveWrongly) {
     const std::vector<double> padding(last() ? 3 : own_.size(), 0.1);
-    expect_on_all(ErrorCode::bad_input, "3 paddings", [&] {
-        (void)engine_->count_pairs({std::span<const Box3f>(own_), padding});
-    });
+    expect_on_all(ErrorCode::bad_input, "3 paddings", [&] { (void)engine_->count_pairs({own_, padding}); });
 }
 
 TEST_F(RankErrors, RefuseCallsThatDiffer) {
@@ -159,19 +143,16 @@ TEST_F(RankErrors, RefuseCallsThatDiffer) {
         PairList list;
         last() ? (void)engine_->find_pairs(own(), list) : gather_pairs(*engine_, list);
     });
-    std::stop_source stopped;
-    stopped.request_stop();
     expect_on_all(ErrorCode::usage, "gather_pairs or a search", [&] {
         PairList list;
-        last() ? gather_pairs(*engine_, list) : (void)engine_->find_pairs(own(), list, {}, stopped.get_token());
+        last() ? gather_pairs(*engine_, list) : (void)engine_->find_pairs(own(), list, {}, requested_stop());
     });
     const std::vector<Box3d> wide(3);
-    expect_on_all(ErrorCode::usage, "the precision", [&] {
-        (void)engine_->count_pairs(last() ? Objects{std::span<const Box3d>(wide), {}} : own());
-    });
+    expect_on_all(ErrorCode::usage, "the precision",
+                  [&] { (void)engine_->count_pairs(last() ? Objects{wide} : own()); });
     const std::vector<double> padding(own_.size(), 0.1);
     expect_on_all(ErrorCode::usage, "the use of padding", [&] {
-        (void)engine_->count_pairs(last() ? Objects{std::span<const Box3f>(own_), padding} : own());
+        (void)engine_->count_pairs(last() ? Objects{own_, padding} : own());
     });
 }
 
@@ -209,11 +190,10 @@ TEST_F(RankErrors, CancelAllWhereOneIsStoppedMeanwhile) {
                 stop.request_stop();
             });
         }
-        Options options;
-        options.order = order;
+        Options options{.order = order};
         PairList list;
         expect_on_all(ErrorCode::cancelled, "cancelled", [&] {
-            (void)engine_->find_pairs({std::span<const Box3f>(many), {}}, list, options, stop.get_token());
+            (void)engine_->find_pairs({many, {}}, list, options, stop.get_token());
         });
     }
 }
@@ -223,15 +203,13 @@ TEST_F(RankErrors, AreNoneWhereThereAreFewObjectsOrNone) {
     const std::vector<Box3f> one(own_rank() == 0 ? 1 : 0, box);
     PairList list;
     EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(), {}}, list).pairs, 0u);
-    EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(one), {}}, list).pairs, 0u);
+    EXPECT_EQ(engine_->find_pairs({one, {}}, list).pairs, 0u);
     const std::vector<Box3f> one_each(1, box);
     const std::uint64_t ranks = rank_count();
-    EXPECT_EQ(engine_->find_pairs({std::span<const Box3f>(one_each), {}}, list).pairs, ranks * (ranks - 1) / 2);
-    EXPECT_EQ(test::all_pieces(list.to_vector()).size(), ranks * (ranks - 1) / 2);
+    EXPECT_EQ(engine_->find_pairs({one_each, {}}, list).pairs, ranks * (ranks - 1) / 2);
+    EXPECT_EQ(all_pieces(list.to_vector()).size(), ranks * (ranks - 1) / 2);
     const std::vector<Box3d> none;
-    EXPECT_EQ(
-        engine_->find_pairs(Join{{std::span<const Box3f>(one), {}}, {std::span<const Box3d>(none), {}}}, list).pairs,
-        0u);
+    EXPECT_EQ(engine_->find_pairs(Join{{one, {}}, {none, {}}}, list).pairs, 0u);
 }
 
 TEST(RankEngine, RefusesNoCommunicator) {
@@ -258,10 +236,10 @@ TEST(RankEngine, WorksOnPartOfTheRanks) {
                                      boxes.begin() + std::ptrdiff_t(boxes.size()) * (rank + 1) / ranks);
         const auto engine = make_mpi_engine(half);
         PairList list;
-        (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
+        (void)engine->find_pairs({own, {}}, list);
         gather_pairs(*engine, list);
         const std::vector<Pair> expected = rank == 0 ? find_pairs(boxes) : std::vector<Pair>();
-        EXPECT_TRUE(test::same_bytes(list.to_vector(), expected));
+        EXPECT_TRUE(same_bytes(list.to_vector(), expected));
     }
     MPI_Comm_free(&half);
 }

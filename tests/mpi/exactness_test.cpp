@@ -9,7 +9,7 @@
 #include "exactness/tiny_tuning.hpp"
 #include "mpi/ranks.hpp"
 #include "samples/scenes.hpp"
-#include "support/any_call.hpp"
+#include "support/cases.hpp"
 #include "support/compare.hpp"
 #include "support/families.hpp"
 #include "support/scale.hpp"
@@ -17,65 +17,62 @@
 namespace octopair::test {
 namespace {
 
-using test::AnyCall;
-using test::Case;
-
 TEST(RankExactness, GivesEachPairOnceInLargeScenes) {
     const auto local = make_local_engine(1), ranks = make_mpi_engine(MPI_COMM_WORLD);
     Case long_tails;
-    long_tails.first.boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
-    for (const Case& whole : {long_tails, test::cloth_case(test::scaled(120'000, 8), 1)}) {
-        const Case own = test::slice(whole, test::Spread::lopsided);
+    long_tails.first.boxes = long_tailed_boxes(scaled(40'000, 4), 2);
+    for (const Case& whole : {long_tails, cloth_case(scaled(120'000, 8), 1)}) {
+        const Case own = slice(whole, Spread::lopsided);
         const AnyCall ascending{own, Order::ascending, false, false}, octal{own, Order::octal, false, false};
-        EXPECT_TRUE(test::same_bytes(test::all_pieces(ascending.made_by(*ranks)), test::second_algorithm_pairs(whole)));
+        EXPECT_TRUE(same_bytes(all_pieces(ascending.made_by(*ranks)), second_algorithm_pairs(whole)));
         const AnyCall alone{whole, Order::octal, false, false};
-        EXPECT_TRUE(test::same_bytes(test::all_pieces(octal.made_by(*ranks)), alone.made_by(*local)));
+        EXPECT_TRUE(same_bytes(all_pieces(octal.made_by(*ranks)), alone.made_by(*local)));
     }
 }
 
 TEST(RankExactness, StoresTheTopOfTheOctreeAndOwnOctants) {
-    if (test::sanitized) GTEST_SKIP() << "a sanitizer slows a million boxes too much";
+    if (sanitized) GTEST_SKIP() << "a sanitizer slows a million boxes too much";
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 1'000'000, 1);
     const auto alone = make_mpi_engine(MPI_COMM_SELF), ranks = make_mpi_engine(MPI_COMM_WORLD);
-    const Objects all{std::span<const Box3f>(boxes), {}};
+    const Objects all{boxes, {}};
     const std::uint64_t pairs = alone->count_pairs(all);
     const std::uint64_t whole = last_costs(*alone).octants;
-    const std::vector<Box3f> own = test::slice(boxes, test::Spread::even);
-    EXPECT_EQ(ranks->count_pairs(Objects{std::span<const Box3f>(own), {}}), pairs);
+    const std::vector<Box3f> own = slice(boxes, Spread::even);
+    EXPECT_EQ(ranks->count_pairs({own}), pairs);
     const std::uint64_t stored = last_costs(*ranks).octants;
-    EXPECT_GE(stored, whole / test::rank_count());
-    EXPECT_LE(double(stored), double(whole) * (0.2 + 1.2 / test::rank_count()));
+    EXPECT_GE(stored, whole / rank_count());
+    EXPECT_LE(double(stored), double(whole) * (0.2 + 1.2 / rank_count()));
 }
 
 #ifdef OCTOPAIR_TEST_HOOKS
 
 /// Returns fewer scenes than the tests of a single process, by a constant factor.
-test::SceneRange seeds() {
-    const test::SceneRange all = test::scene_range(test::SceneSize::small, test::scaled(10'000, 20));
-    return all.size() == 1 ? all : all.part(0, 50 * test::rank_count());
+SceneRange seeds() {
+    const SceneRange all = scene_range(SceneSize::small, scaled(10'000, 20));
+    return all.size() == 1 ? all : all.part(0, 50 * rank_count());
 }
-bool are_enough() { return !test::sanitized && test::rank_count() > 1 && seeds().size() >= 200; }
+bool are_enough() { return !sanitized && rank_count() > 1 && seeds().size() >= 200; }
 
 /// All ranks make the calls on their slices of a case. Rank 0 sets the tuning. The ranks wait before and after.
 class MpiSmallScenes : public ::testing::Test {
 protected:
     void set_tuning(const Tuning& tuning) {
-        (void)test::on_all(true);
-        if (test::own_rank() == 0) test_hooks().tuning = tuning;
-        (void)test::on_all(true);
+        (void)on_all(true);
+        if (own_rank() == 0) test_hooks().tuning = tuning;
+        (void)on_all(true);
     }
 
-    void check(const Case& whole, const std::vector<Pair>& expected, test::Spread spread) {
-        const Case own = test::slice(whole, spread);
+    void check(const Case& whole, const std::vector<Pair>& expected, Spread spread) {
+        const Case own = slice(whole, spread);
         for (unsigned way = 0; way < 8; ++way) {
             const Order order = (way & 1) != 0 ? Order::octal : Order::ascending;
             const AnyCall asked{own, order, (way & 2) != 0, (way & 4) != 0};
-            const std::vector<Pair> found = test::all_pieces(asked.made_by(*ranks_));
+            const std::vector<Pair> found = all_pieces(asked.made_by(*ranks_));
             // A single process finds the same bytes, and brute force the same set.
             const AnyCall alone{whole, order, false, asked.limited};
-            EXPECT_TRUE(test::same_bytes(found, alone.made_by(*local_)));
+            EXPECT_TRUE(same_bytes(found, alone.made_by(*local_)));
             if (!asked.limited && order == Order::ascending) {
-                EXPECT_TRUE(test::same_bytes(found, expected));
+                EXPECT_TRUE(same_bytes(found, expected));
             }
             EXPECT_EQ(asked.counted_by(*ranks_), alone.counted_by(*local_));
         }
@@ -88,43 +85,43 @@ protected:
 TEST_F(MpiSmallScenes, OfSlices) {
     bool good = true;
     for (std::uint64_t seed = seeds().begin; seed < seeds().end && good; ++seed) {
-        const Case whole = test::small_case(seed);
+        const Case whole = small_case(seed);
         SCOPED_TRACE("seed " + std::to_string(seed) + ": " + whole.describe());
-        set_tuning(test::tiny_tuning(seed));
-        check(whole, test::brute_force_pairs(whole), test::spreads[seed % 3]);
+        set_tuning(tiny_tuning(seed));
+        check(whole, brute_force_pairs(whole), spreads[seed % 3]);
         set_tuning(default_tuning);
-        good = test::on_all(!HasFailure());
+        good = on_all(!HasFailure());
     }
     if (!are_enough()) return;
     using enum Path;
-    EXPECT_EQ(test::paths_not_taken(
-                  {ranks_top_divided, object_on_ranks, ranks_window, nested_once, positions_near, positions_far}),
-              "");
+    EXPECT_EQ(
+        paths_not_taken({ranks_top_divided, object_on_ranks, ranks_window, nested_once, positions_near, positions_far}),
+        "");
 }
 
 /// Makes calls of an engine on rank 0. Other ranks follow that engine.
 template <typename Calls>
 void lead_engines(const Calls& calls) {
-    if (test::own_rank() != 0) return follow(MPI_COMM_WORLD);
+    if (own_rank() != 0) return follow(MPI_COMM_WORLD);
     const std::shared_ptr<Engine> leading = make_leading_engine(MPI_COMM_WORLD), local = make_local_engine(2);
     calls([=](unsigned threads) -> Engine& { return threads == 1 ? *local : *leading; });
 }
 
 TEST(MpiSmallScenesLed, AreWhatBruteForceFinds) {
-    lead_engines([](const test::EngineFor& engines) {
-        const auto finding = test::check_small_cases(seeds(), engines);
+    lead_engines([](const EngineFor& engines) {
+        const auto finding = check_small_cases(seeds(), engines);
         ASSERT_FALSE(finding) << finding->check << ": " << finding->text;
         if (!are_enough()) return;
         using enum Path;
-        EXPECT_EQ(test::paths_not_taken({relay_full, relay_listed, relay_found_again, ranks_window}), "");
+        EXPECT_EQ(paths_not_taken({relay_full, relay_listed, relay_found_again, ranks_window}), "");
     });
 }
 
 void expect_found(Fault fault) {
-    if (test::rank_count() == 1) GTEST_SKIP() << "no other rank";
-    lead_engines([=](const test::EngineFor& engines) {
-        const test::FaultScope planted(fault);
-        const auto finding = test::check_small_cases({0, 300}, engines);
+    if (rank_count() == 1) GTEST_SKIP() << "no other rank";
+    lead_engines([=](const EngineFor& engines) {
+        const FaultScope planted(fault);
+        const auto finding = check_small_cases({0, 300}, engines);
         ASSERT_TRUE(finding);
         std::printf("found by %s: %s\n", finding->check.c_str(), finding->text.c_str());
     });

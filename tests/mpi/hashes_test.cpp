@@ -4,6 +4,7 @@
 
 #include "mpi/ranks.hpp"
 #include "samples/scenes.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
 #include "support/hash.hpp"
 #include "support/kinds.hpp"
@@ -13,20 +14,15 @@
 namespace octopair::test {
 namespace {
 
-using test::Spread;
-
 class RankHashes : public ::testing::TestWithParam<std::string> {
 protected:
-    static Objects view(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes), {}}; }
+    static Objects view(const std::vector<Box3f>& boxes) { return {boxes, {}}; }
     static Options options_of(Order order) {
-        Options options;
-        options.order = order;
+        Options options{.order = order};
         return options;
     }
     static std::vector<Pair> listed(Engine& engine, const Objects& objects, Order order) {
-        PairList list;
-        (void)engine.find_pairs(objects, list, options_of(order));
-        return list.to_vector();
+        return listed_pairs(engine, objects, options_of(order));
     }
     static std::vector<Pair> streamed(Engine& engine, const Objects& objects, Order order) {
         std::vector<Pair> all;
@@ -36,7 +32,7 @@ protected:
         return all;
     }
 
-    const test::Pinned& pinned_ = test::pinned_scene(GetParam());
+    const Pinned& pinned_ = pinned_scene(GetParam());
     const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
 };
 
@@ -47,51 +43,48 @@ std::vector<std::string> sample_kinds() {
 
 TEST_P(RankHashes, AreThoseOfThreads) {
     const bool many = pinned_.pairs > 300'000;
-    if (many && test::sanitized) GTEST_SKIP() << "too many pairs for a sanitizer";
+    if (many && sanitized) GTEST_SKIP() << "too many pairs for a sanitizer";
     const std::vector<Pair> octal = listed(*make_local_engine(1), view(boxes_), Order::octal);
     for (const unsigned threads : {1u, 2u}) {
         const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = threads});
-        for (const Spread spread : test::spreads) {
+        for (const Spread spread : spreads) {
             if (many && spread != Spread::even) continue;
-            SCOPED_TRACE(std::to_string(threads) + " threads, " + test::name_of(spread));
-            const std::vector<Box3f> own = test::slice(boxes_, spread);
-            EXPECT_EQ(test::hash_of(test::all_pieces(listed(*engine, view(own), Order::ascending))), pinned_.pair_hash);
-            EXPECT_EQ(test::hash_of(test::all_pieces(streamed(*engine, view(own), Order::ascending))),
-                      pinned_.pair_hash);
-            EXPECT_TRUE(test::same_bytes(test::all_pieces(listed(*engine, view(own), Order::octal)), octal));
-            EXPECT_TRUE(test::same_bytes(test::all_pieces(streamed(*engine, view(own), Order::octal)), octal));
+            SCOPED_TRACE(std::to_string(threads) + " threads, " + name_of(spread));
+            const std::vector<Box3f> own = slice(boxes_, spread);
+            EXPECT_EQ(hash_of(all_pieces(listed(*engine, view(own), Order::ascending))), pinned_.pair_hash);
+            EXPECT_EQ(hash_of(all_pieces(streamed(*engine, view(own), Order::ascending))), pinned_.pair_hash);
+            EXPECT_TRUE(same_bytes(all_pieces(listed(*engine, view(own), Order::octal)), octal));
+            EXPECT_TRUE(same_bytes(all_pieces(streamed(*engine, view(own), Order::octal)), octal));
             EXPECT_EQ(engine->count_pairs(view(own)), pinned_.pairs);
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kinds()), param_name);
 
 TEST(Ranks, ShareTheWork) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 100'000, 1);
-    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
+    const std::vector<Box3f> own = slice(boxes, Spread::even);
     const auto engine = make_mpi_engine(MPI_COMM_WORLD);
     for (const Order order : {Order::octal, Order::ascending}) {
         PairList piece;
-        Options options;
-        options.order = order;
-        const Summary summary = engine->find_pairs({std::span<const Box3f>(own), {}}, piece, options);
-        EXPECT_GT(piece.size(), summary.pairs / test::rank_count() / 2);
-        EXPECT_LT(piece.size(), 2 * summary.pairs / test::rank_count() + 1);
+        Options options{.order = order};
+        const Summary summary = engine->find_pairs({own, {}}, piece, options);
+        EXPECT_GT(piece.size(), summary.pairs / rank_count() / 2);
+        EXPECT_LT(piece.size(), 2 * summary.pairs / rank_count() + 1);
     }
 }
 
 /// Uses a buffer too small for the pairs of a rank: pairs are sent in windows, up to any limit.
 TEST(Ranks, StreamManyPairsInBoundedMemory) {
-    const std::vector<Box3f> boxes = samples::make_scene("dense", test::scaled(300'000, 2), 1);
-    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
+    const std::vector<Box3f> boxes = samples::make_scene("dense", scaled(300'000, 2), 1);
+    const std::vector<Box3f> own = slice(boxes, Spread::even);
     const std::vector<Pair> expected = find_pairs(boxes);
-    Options options;
-    options.buffer_bytes = 1 << 20;
+    Options options{.buffer_bytes = 1 << 20};
     const auto streamed = [&](Engine& engine, std::uint64_t& most) {
         std::vector<Pair> all;
         const Summary summary = engine.stream_pairs(
-            {std::span<const Box3f>(own), {}},
+            {own, {}},
             [&](std::span<const Pair> batch) {
                 all.insert(all.end(), batch.begin(), batch.end());
                 most = std::max<std::uint64_t>(most, batch.size());
@@ -99,7 +92,7 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
             options);
         EXPECT_EQ(summary.pairs, std::min<std::uint64_t>(options.limit.value_or(~0ull), expected.size()));
         EXPECT_EQ(summary.truncated, summary.pairs < expected.size());
-        return test::all_pieces(all);
+        return all_pieces(all);
     };
     for (const unsigned threads : {1u, 2u}) {
         const auto engine = make_mpi_engine(MPI_COMM_WORLD, {.threads = threads});
@@ -108,14 +101,12 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
             std::uint64_t most = 0;
             const std::vector<Pair> found = streamed(*engine, most);
             const auto wanted = std::span(expected).first(std::min<std::uint64_t>(limit, expected.size()));
-            EXPECT_TRUE(test::same_bytes(found, {wanted.begin(), wanted.end()}));
+            EXPECT_TRUE(same_bytes(found, {wanted.begin(), wanted.end()}));
             EXPECT_LE(most * sizeof(Pair), options.buffer_bytes);
         }
         // Then all pairs again, without a limit.
         options.limit.reset();
-        PairList list;
-        (void)engine->find_pairs({std::span<const Box3f>(own), {}}, list);
-        EXPECT_TRUE(test::same_bytes(test::all_pieces(list.to_vector()), expected));
+        EXPECT_TRUE(same_bytes(all_pieces(listed_pairs(*engine, {own, {}})), expected));
     }
 }
 
@@ -123,27 +114,26 @@ TEST(Ranks, StreamManyPairsInBoundedMemory) {
 TEST(Ranks, StreamWhatIsTooMuchForOneOfThem) {
     std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
     boxes.insert(boxes.end(), 500, boxes.front());
-    const std::vector<Box3f> own = test::slice(boxes, Spread::even);
+    const std::vector<Box3f> own = slice(boxes, Spread::even);
     const auto engine = make_mpi_engine(MPI_COMM_WORLD);
-    Options options;
-    options.buffer_bytes = 1 << 20;
+    Options options{.buffer_bytes = 1 << 20};
     std::vector<Pair> found;
     (void)engine->stream_pairs(
-        {std::span<const Box3f>(own), {}},
-        [&](std::span<const Pair> batch) { found.insert(found.end(), batch.begin(), batch.end()); }, options);
-    EXPECT_TRUE(test::same_bytes(test::all_pieces(found), find_pairs(boxes)));
+        {own, {}}, [&](std::span<const Pair> batch) { found.insert(found.end(), batch.begin(), batch.end()); },
+        options);
+    EXPECT_TRUE(same_bytes(all_pieces(found), find_pairs(boxes)));
 }
 
 TEST(Ranks, GatherTheirPieces) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 20'000, 1);
-    const std::vector<Box3f> own = test::slice(boxes, Spread::lopsided);
+    const std::vector<Box3f> own = slice(boxes, Spread::lopsided);
     const auto engine = make_mpi_engine(MPI_COMM_WORLD);
     PairList pairs;
-    const Summary summary = engine->find_pairs({std::span<const Box3f>(own), {}}, pairs);
+    const Summary summary = engine->find_pairs({own, {}}, pairs);
     gather_pairs(*engine, pairs);
-    if (test::own_rank() == 0) {
+    if (own_rank() == 0) {
         EXPECT_EQ(pairs.size(), summary.pairs);
-        EXPECT_TRUE(test::same_bytes(pairs.to_vector(), find_pairs(boxes)));
+        EXPECT_TRUE(same_bytes(pairs.to_vector(), find_pairs(boxes)));
     } else {
         EXPECT_EQ(pairs.size(), 0u);
     }

@@ -16,11 +16,6 @@
 namespace octopair::test {
 namespace {
 
-using test::Case;
-using test::own_rank;
-using test::OwnedObjects;
-using test::Spread;
-
 /// Objects and their caller-defined indices.
 struct Called {
     OwnedObjects objects;
@@ -46,7 +41,7 @@ Called scattered(const OwnedObjects& set, Spread spread, std::uint64_t seed) {
     std::iota(order.begin(), order.end(), 0u);
     samples::RandomStream random(seed, 0);
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[std::size_t(random.below(i))]);
-    const std::vector<std::uint32_t> own = test::slice(order, spread);
+    const std::vector<std::uint32_t> own = slice(order, spread);
     Called called;
     std::visit([&](const auto& boxes) { called.objects.boxes = in_order(boxes, own); }, set.boxes);
     called.objects.padding = in_order(set.padding, own);
@@ -69,7 +64,7 @@ protected:
             for (const bool limited : {false, true}) {
                 Options options{.order = order, .margin = whole.margin};
                 if (limited) options.limit = whole.limit;
-                const Spread spread = test::spreads[seed % std::size(test::spreads)];
+                const Spread spread = spreads[seed % std::size(spreads)];
                 SCOPED_TRACE(whole.describe() + ", " + name_of(spread));
                 PairList expected;
                 std::vector<Pair64> found;
@@ -79,7 +74,7 @@ protected:
                 const Summary summary = local_->find_pairs(whole.input(), expected, options);
                 const Summary found_summary = find_pairs64(
                     *ranks_, {first.view(), second ? std::optional(second->view()) : std::nullopt}, found, options);
-                EXPECT_EQ(test::all_pieces(found), called(expected.to_vector()));
+                EXPECT_EQ(all_pieces(found), called(expected.to_vector()));
                 EXPECT_EQ(found_summary.pairs, summary.pairs);
                 EXPECT_EQ(found_summary.truncated, summary.truncated);
             }
@@ -91,9 +86,9 @@ protected:
 
 TEST_F(RankIndices, AreThoseOfTheCaller) {
     for (const char* kind : {"uniform", "dense", "clustered", "mixed", "coincident", "same-x", "far-outlier"}) {
-        for (std::uint64_t i = 0; i < test::case_count(3); ++i) {
-            const std::uint64_t seed = test::case_seed(kind, i);
-            const Case whole = test::make_case(kind, seed);
+        for (std::uint64_t i = 0; i < case_count(3); ++i) {
+            const std::uint64_t seed = case_seed(kind, i);
+            const Case whole = make_case(kind, seed);
             expect_same(whole, seed);
         }
     }
@@ -101,40 +96,40 @@ TEST_F(RankIndices, AreThoseOfTheCaller) {
 
 TEST_F(RankIndices, CountOnFromRankToRankWhereNoneAreGiven) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", 3'000, 1);
-    const std::vector<Box3f> own = test::slice(boxes, Spread::lopsided);
+    const std::vector<Box3f> own = slice(boxes, Spread::lopsided);
     std::vector<Pair64> found, expected;
-    (void)find_pairs64(*ranks_, IndexedObjects{{std::span(own), {}}, {}}, found);
+    (void)find_pairs64(*ranks_, IndexedObjects{{own}, {}}, found);
     for (const Pair& pair : find_pairs(boxes)) expected.push_back({pair.a, pair.b});
-    EXPECT_EQ(test::all_pieces(found), expected);
+    EXPECT_EQ(all_pieces(found), expected);
 }
 
 TEST_F(RankIndices, AreRefusedOnAllRanks) {
     const std::vector<Box3f> boxes = samples::make_scene("dense", 1'000, 1);
-    std::vector<Box3f> own = test::slice(boxes, Spread::even);
+    std::vector<Box3f> own = slice(boxes, Spread::even);
     std::vector<std::uint64_t> indices(own.size());
     std::iota(indices.begin(), indices.end(), std::uint64_t(1) << 40);
     const auto expect_refused = [&](ErrorCode code, const std::string& message, std::span<const std::uint64_t> given) {
         std::vector<Pair64> found(1);
         std::optional<Error> refused;
         try {
-            (void)find_pairs64(*ranks_, IndexedObjects{{std::span(own), {}}, given}, found);
+            (void)find_pairs64(*ranks_, IndexedObjects{{own}, given}, found);
         } catch (const Error& error) {
             refused = error;
         }
-        ASSERT_TRUE(test::on_all(refused.has_value()));
+        ASSERT_TRUE(on_all(refused.has_value()));
         EXPECT_EQ(int(refused->code()), int(code)) << refused->what();
-        EXPECT_NE(std::string(refused->what()).find(message), std::string::npos) << refused->what();
+        EXPECT_TRUE(has_text(refused->what(), message));
         EXPECT_TRUE(found.empty());
     };
-    const bool last = own_rank() + 1 == test::rank_count();
+    const bool last = own_rank() + 1 == rank_count();
     expect_refused(ErrorCode::bad_input, "3 indices for", last ? std::span(indices).first(3) : std::span(indices));
-    if (test::rank_count() > 1) {
+    if (rank_count() > 1) {
         expect_refused(ErrorCode::usage, "other ranks give indices", last ? std::span(indices).first(0) : indices);
         // All ranks give the same indices.
         expect_refused(ErrorCode::bad_input, "is given to two objects", indices);
     }
     std::ranges::transform(indices, indices.begin(),
-                           [&](std::uint64_t index) { return index + test::own_slice(1'000, Spread::even).begin; });
+                           [&](std::uint64_t index) { return index + own_slice(1'000, Spread::even).begin; });
     if (own_rank() == 0) own[5].max[1] = std::numeric_limits<float>::quiet_NaN();
     expect_refused(ErrorCode::bad_input, "object 1099511627781: ", indices);
 }

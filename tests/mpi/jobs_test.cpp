@@ -4,6 +4,7 @@
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
 #include "support/scale.hpp"
 
@@ -12,18 +13,18 @@ namespace {
 
 class RankJobs : public ::testing::Test {
 protected:
-    JobObjects own() const { return borrowed({std::span<const Box3f>(own_), {}}); }
-    bool last() const { return test::own_rank() + 1 == test::rank_count(); }
+    JobObjects own() const { return borrowed({own_, {}}); }
+    bool last() const { return own_rank() + 1 == rank_count(); }
     void expect_right(Job& job) {
         PairList pairs = job.take_pairs();
-        EXPECT_TRUE(test::same_bytes(test::all_pieces(pairs.to_vector()), expected_));
+        EXPECT_TRUE(same_bytes(all_pieces(pairs.to_vector()), expected_));
     }
     /// Returns objects whose detection takes seconds.
-    JobObjects slow() const { return borrowed({std::span<const Box3f>(many_), {}}); }
+    JobObjects slow() const { return borrowed({many_, {}}); }
 
     const std::vector<Box3f> boxes_ = samples::make_scene("dense", 5'000, 1);
     const std::vector<Pair> expected_ = find_pairs(boxes_);
-    const std::vector<Box3f> own_ = test::slice(boxes_, test::Spread::even);
+    const std::vector<Box3f> own_ = slice(boxes_, Spread::even);
     const std::vector<Box3f> many_{60'000, Box3f{{0, 0, 0}, {1, 1, 1}}};
     std::unique_ptr<Engine> engine_ = make_mpi_engine(MPI_COMM_WORLD);
 };
@@ -32,9 +33,7 @@ TEST_F(RankJobs, RunInTurnWithCalls) {
     std::vector<Job> jobs;
     for (int i = 0; i < 4; ++i) {
         jobs.push_back(engine_->submit(own()));
-        PairList list;
-        (void)engine_->find_pairs({std::span<const Box3f>(own_), {}}, list);
-        EXPECT_EQ(test::all_pieces(list.to_vector()).size(), expected_.size());
+        EXPECT_EQ(all_pieces(listed_pairs(*engine_, {own_, {}})).size(), expected_.size());
         jobs.push_back(engine_->submit(own()));
     }
     for (Job& job : jobs) expect_right(job);
@@ -67,8 +66,7 @@ TEST_F(RankJobs, AreCancelledByTheEndOfTheEngine) {
 }
 
 TEST_F(RankJobs, ProgressGrowsWhilePairsAreSorted) {
-    const std::vector<Box3f> own =
-        test::slice(samples::make_scene("dense", test::scaled(100'000, 4), 1), test::Spread::even);
+    const std::vector<Box3f> own = slice(samples::make_scene("dense", scaled(100'000, 4), 1), Spread::even);
     double last = 0;
     unsigned after_scan = 0;
     Options options;
@@ -78,7 +76,7 @@ TEST_F(RankJobs, ProgressGrowsWhilePairsAreSorted) {
         after_scan += done > 0.81 && done < 0.99 ? 1 : 0;
     };
     PairList pairs;
-    engine_->find_pairs(Objects{std::span<const Box3f>(own), {}}, pairs, options);
+    engine_->find_pairs({own}, pairs, options);
     EXPECT_EQ(last, 1);
     EXPECT_GE(after_scan, 1u);
 }
@@ -86,13 +84,9 @@ TEST_F(RankJobs, ProgressGrowsWhilePairsAreSorted) {
 TEST_F(RankJobs, ReportTheSameErrorOnAllRanks) {
     std::vector<Box3f> bad = own_;
     if (last()) bad.back().max[2] = -1;
-    Job job = engine_->submit(borrowed({std::span<const Box3f>(bad), {}}));
-    try {
-        (void)job.take_pairs();
-        ADD_FAILURE() << "no error";
-    } catch (const Error& error) {
-        EXPECT_EQ(std::string(error.what()).substr(0, 12), "object 4999:") << error.what();
-    }
+    Job job = engine_->submit(borrowed({bad, {}}));
+    const std::string message = error_of(ErrorCode::bad_input, [&] { (void)job.take_pairs(); });
+    EXPECT_TRUE(message.starts_with("object 4999:")) << message;
 }
 
 }  // namespace

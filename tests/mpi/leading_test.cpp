@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <stdexcept>
 #include <thread>
 
@@ -11,7 +10,7 @@
 #include "mpi/ranks.hpp"
 #include "octopair/error.hpp"
 #include "samples/scenes.hpp"
-#include "support/any_call.hpp"
+#include "support/cases.hpp"
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
@@ -19,13 +18,10 @@
 namespace octopair::test {
 namespace {
 
-using test::AnyCall;
-using test::Case;
-
 /// Makes calls of an engine on rank 0. Other ranks follow that engine.
 template <typename Calls>
 void lead(const Calls& calls, unsigned threads = 1) {
-    if (test::own_rank() != 0) return follow(MPI_COMM_WORLD, {.threads = threads});
+    if (own_rank() != 0) return follow(MPI_COMM_WORLD, {.threads = threads});
     const auto engine = make_leading_engine(MPI_COMM_WORLD, {.threads = threads});
     calls(*engine);
 }
@@ -36,14 +32,14 @@ class RankLeadingProperty : public ::testing::TestWithParam<std::string> {};
 TEST_P(RankLeadingProperty, AgreesWithThreads) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
-        for (std::uint64_t i = 0; i < test::case_count(test::scaled(2, 1)); ++i) {
-            const std::uint64_t seed = test::case_seed(GetParam(), i);
-            const Case whole = test::make_case(GetParam(), seed);
+        for (std::uint64_t i = 0; i < case_count(scaled(2, 1)); ++i) {
+            const std::uint64_t seed = case_seed(GetParam(), i);
+            const Case whole = make_case(GetParam(), seed);
             SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed) + ": " + whole.describe());
             for (unsigned way = 0; way < 8; ++way) {
                 const AnyCall call{whole, (way & 1) != 0 ? Order::octal : Order::ascending, (way & 2) != 0,
                                    (way & 4) != 0};
-                EXPECT_TRUE(test::same_bytes(call.made_by(engine), call.made_by(*local)));
+                EXPECT_TRUE(same_bytes(call.made_by(engine), call.made_by(*local)));
                 EXPECT_EQ(call.counted_by(engine), call.counted_by(*local));
             }
             if (HasFailure()) break;
@@ -51,15 +47,15 @@ TEST_P(RankLeadingProperty, AgreesWithThreads) {
     });
 }
 
-INSTANTIATE_TEST_SUITE_P(, RankLeadingProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, RankLeadingProperty, ::testing::ValuesIn(all_kind_names()), param_name);
 
 class RankLeading : public ::testing::Test {
 protected:
-    Objects objects() const { return {std::span<const Box3f>(boxes_), {}}; }
+    Objects objects() const { return {boxes_, {}}; }
     void expect_usable(Engine& engine) const {
         PairList list;
         const Summary summary = engine.find_pairs(objects(), list);
-        EXPECT_TRUE(test::same_bytes(list.to_vector(), expected_));
+        EXPECT_TRUE(same_bytes(list.to_vector(), expected_));
         EXPECT_EQ(summary.pairs, expected_.size());
         EXPECT_FALSE(summary.truncated);
         EXPECT_GT(summary.entries, 0u);
@@ -75,27 +71,24 @@ protected:
 /// ascending order, pairs are sent in windows.
 TEST_F(RankLeading, StreamsInBoundedMemory) {
     // The coincident boxes are at one place, which a single rank owns. All ranks own some boxes of the loop.
-    std::vector<Box3f> boxes = samples::make_scene("coincident", test::scaled(1'000, 1), 1);
-    for (std::size_t i = 0; i < test::scaled(6'000, 2); ++i) {
+    std::vector<Box3f> boxes = samples::make_scene("coincident", scaled(1'000, 1), 1);
+    for (std::size_t i = 0; i < scaled(6'000, 2); ++i) {
         Box3f& box = boxes.emplace_back();
         for (std::size_t axis = 0; axis < 3; ++axis) {
             box.min[axis] = float((i * (axis * 24 + 7)) % 1009) / 1009;
             box.max[axis] = box.min[axis] + 0.15F;
         }
     }
-    const Objects all{std::span<const Box3f>(boxes), {}};
+    const Objects all{boxes, {}};
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const std::uint64_t count = local->count_pairs(all);
-        ASSERT_GT(count, test::scaled(10 << 17, 4));  // 2^17 pairs are 1 MiB
+        ASSERT_GT(count, scaled(10 << 17, 4));  // 2^17 pairs are 1 MiB
         std::vector<std::optional<std::uint64_t>> limits = {{}, count / 3};
-        if (!test::sanitized) limits.insert(limits.end(), {7, count - 5, count});
+        if (!sanitized) limits.insert(limits.end(), {7, count - 5, count});
         for (const Order order : {Order::octal, Order::ascending}) {
             for (const auto& limit : limits) {
-                Options options;
-                options.order = order;
-                options.limit = limit;
-                options.buffer_bytes = 1 << 20;
+                Options options{.order = order, .limit = limit, .buffer_bytes = 1 << 20};
                 const auto streamed = [&](Engine& from) {
                     std::vector<Pair> pairs;
                     const Summary summary = from.stream_pairs(
@@ -104,7 +97,7 @@ TEST_F(RankLeading, StreamsInBoundedMemory) {
                     EXPECT_EQ(summary.truncated, limit && *limit < count);
                     return pairs;
                 };
-                EXPECT_TRUE(test::same_bytes(streamed(engine), streamed(*local)));
+                EXPECT_TRUE(same_bytes(streamed(engine), streamed(*local)));
             }
         }
     });
@@ -118,23 +111,22 @@ TEST_F(RankLeading, ReportsErrorsLikeTheLocalEngine) {
     lead([&](Engine& engine) {
         const auto local = make_local_engine(1);
         const auto expect_same = [&](ErrorCode code, const auto& call) {
-            EXPECT_EQ(test::message_of(code, [&] { call(engine); }), test::message_of(code, [&] { call(*local); }));
+            EXPECT_EQ(error_of(code, [&] { call(engine); }), error_of(code, [&] { call(*local); }));
             expect_usable(engine);
         };
         std::vector<Box3f> bad = boxes_;
         bad[4'990].min[0] = bad[4'990].max[0] + 1;
         bad[4'000].max[2] = std::numeric_limits<float>::quiet_NaN();
-        const Objects bad_boxes{std::span<const Box3f>(bad), {}};
+        const Objects bad_boxes{bad, {}};
         expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(bad_boxes); });
         expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(Join{objects(), bad_boxes}); });
         std::vector<double> padding(boxes_.size(), 0.1);
         padding[4'500] = -1;
-        const Objects bad_padding{std::span<const Box3f>(boxes_), padding};
+        const Objects bad_padding{boxes_, padding};
         expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(bad_padding); });
-        const Objects few_paddings{std::span<const Box3f>(boxes_), std::span(padding).first(3)};
+        const Objects few_paddings{boxes_, std::span(padding).first(3)};
         expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(few_paddings); });
-        Options options;
-        options.margin = -1;
+        Options options{.margin = -1};
         expect_same(ErrorCode::bad_input, [&](Engine& any) { (void)any.count_pairs(objects(), options); });
     });
 }
@@ -149,8 +141,7 @@ struct Refused : Error {
 TEST_F(RankLeading, PassesOnWhatTheCallersFunctionsThrow) {
     lead([&](Engine& engine) {
         for (const Order order : {Order::octal, Order::ascending}) {
-            Options options;
-            options.order = order;
+            Options options{.order = order};
             std::size_t taken = 0;
             const auto full_after = [&](std::size_t most) {
                 return [&taken, most](std::span<const Pair> some) {
@@ -175,21 +166,17 @@ TEST_F(RankLeading, PassesOnWhatTheCallersFunctionsThrow) {
 
 TEST_F(RankLeading, EndsAllRanksAtAStop) {
     lead([&](Engine& engine) {
-        std::stop_source early;
-        early.request_stop();
-        (void)test::message_of(ErrorCode::cancelled,
-                               [&] { (void)engine.count_pairs(objects(), {}, early.get_token()); });
+        (void)error_of(ErrorCode::cancelled, [&] { (void)engine.count_pairs(objects(), {}, requested_stop()); });
         for (const Order order : {Order::octal, Order::ascending}) {
             std::stop_source stop;
             const std::jthread stopper([&] {
                 std::this_thread::sleep_for(std::chrono::milliseconds(100));
                 stop.request_stop();
             });
-            Options options;
-            options.order = order;
+            Options options{.order = order};
             const PairSink sink = [](std::span<const Pair>) {};
-            (void)test::message_of(ErrorCode::cancelled, [&] {
-                (void)engine.stream_pairs({std::span<const Box3f>(many_), {}}, sink, options, stop.get_token());
+            (void)error_of(ErrorCode::cancelled, [&] {
+                (void)engine.stream_pairs({many_, {}}, sink, options, stop.get_token());
             });
         }
         expect_usable(engine);
@@ -205,11 +192,11 @@ TEST_F(RankLeading, HasJobsAndCallsFromAllThreads) {
             last = done;
         };
         Job job = engine.submit(borrowed(objects()), options);
-        Job cancelled = engine.submit(borrowed(Objects{std::span<const Box3f>(many_), {}}));
+        Job cancelled = engine.submit(borrowed(Objects{many_}));
         std::vector<std::jthread> callers;
         callers.reserve(3);
         for (int i = 0; i < 3; ++i) callers.emplace_back([&] { expect_usable(engine); });
-        EXPECT_TRUE(test::same_bytes(job.take_pairs().to_vector(), expected_));
+        EXPECT_TRUE(same_bytes(job.take_pairs().to_vector(), expected_));
         EXPECT_EQ(last, 1);
         cancelled.cancel();
         EXPECT_THROW((void)cancelled.take_pairs(), Error);
@@ -221,8 +208,8 @@ TEST_F(RankLeading, IsFollowedAgainAndByNobodyElse) {
 }
 
 TEST(RankHeartbeat, NamesTheSilentRank) {
-    if (test::rank_count() == 1) GTEST_SKIP() << "no other rank";
-    const bool first = test::own_rank() == 0, last = test::own_rank() + 1 == test::rank_count();
+    if (rank_count() == 1) GTEST_SKIP() << "no other rank";
+    const bool first = own_rank() == 0, last = own_rank() + 1 == rank_count();
     constexpr std::chrono::milliseconds silence(2000);  // longer than the stalls of a busy machine
     Communicator comm(MPI_COMM_WORLD);
     Heartbeat heartbeat(comm, silence);
@@ -241,7 +228,7 @@ TEST(RankHeartbeat, NamesTheSilentRank) {
         EXPECT_THROW(work(1000, [&] { heartbeat.beat(); }), Error);
         EXPECT_GE(std::chrono::steady_clock::now() - begun, silence);
         ASSERT_TRUE(heartbeat.lost());
-        EXPECT_EQ(*heartbeat.lost(), "rank " + std::to_string(test::rank_count() - 1) + " has not answered for 2 s");
+        EXPECT_EQ(*heartbeat.lost(), "rank " + std::to_string(rank_count() - 1) + " has not answered for 2 s");
     } else if (!last) {
         work(500, [&] { heartbeat.beat(); });
     }

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "mpi/ranks.hpp"
-#include "support/any_call.hpp"
 #include "support/cases.hpp"
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
@@ -11,19 +10,15 @@
 namespace octopair::test {
 namespace {
 
-using test::AnyCall;
-using test::Case;
-using test::Spread;
-
 class RankProperty : public ::testing::TestWithParam<std::string> {
 protected:
     void check(const Case& whole, Spread spread) {
-        const Case own = test::slice(whole, spread);
+        const Case own = slice(whole, spread);
         for (const Order order : {Order::octal, Order::ascending}) {
             for (const bool limited : {false, true}) {
                 for (const bool streamed : {false, true}) {
                     const AnyCall expected{whole, order, streamed, limited}, asked{own, order, streamed, limited};
-                    EXPECT_TRUE(test::same_bytes(test::all_pieces(asked.made_by(*engine_)), expected.made_by(*local_)));
+                    EXPECT_TRUE(same_bytes(all_pieces(asked.made_by(*engine_)), expected.made_by(*local_)));
                     EXPECT_EQ(asked.counted_by(*engine_), expected.counted_by(*local_));
                 }
             }
@@ -35,11 +30,11 @@ protected:
 };
 
 TEST_P(RankProperty, AgreesWithThreads) {
-    for (std::uint64_t i = 0; i < test::case_count(test::scaled(6, 3)); ++i) {
-        const std::uint64_t seed = test::case_seed(GetParam(), i);
-        const Case whole = test::make_case(GetParam(), seed);
+    for (std::uint64_t i = 0; i < case_count(scaled(6, 3)); ++i) {
+        const std::uint64_t seed = case_seed(GetParam(), i);
+        const Case whole = make_case(GetParam(), seed);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed) + ": " + whole.describe());
-        check(whole, test::spreads[i % 3]);
+        check(whole, spreads[i % 3]);
         if (HasFailure()) break;
     }
 }
@@ -49,20 +44,20 @@ TEST_P(RankProperty, AgreesWithThreadsOnLargerScenes) {
     if (GetParam() == "denormals" || GetParam() == "largest") GTEST_SKIP() << "each call takes seconds with any engine";
     Case whole;
     const auto pairs_of = [&](std::size_t objects) {
-        whole.first.boxes = test::make_double_boxes(GetParam(), objects, test::case_seed(GetParam(), 0));
+        whole.first.boxes = make_double_boxes(GetParam(), objects, case_seed(GetParam(), 0));
         return AnyCall{whole, Order::octal, false, false}.counted_by(*local_);
     };
     // The first count tells where most boxes overlap: a count of 80 million pairs would take half a minute with a sanitizer.
-    constexpr std::uint64_t most = test::scaled(1'000'000, 8);
+    constexpr std::uint64_t most = scaled(1'000'000, 8);
     if (pairs_of(1'300) > most / 10 || pairs_of(13'000) > most) GTEST_SKIP() << "too many pairs";
-    const Case own = test::slice(whole, Spread::even);
+    const Case own = slice(whole, Spread::even);
     for (const Order order : {Order::octal, Order::ascending}) {
         const AnyCall expected{whole, order, false, false}, asked{own, order, false, false};
-        EXPECT_TRUE(test::same_bytes(test::all_pieces(asked.made_by(*engine_)), expected.made_by(*local_)));
+        EXPECT_TRUE(same_bytes(all_pieces(asked.made_by(*engine_)), expected.made_by(*local_)));
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, RankProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, RankProperty, ::testing::ValuesIn(all_kind_names()), param_name);
 
 }  // namespace
 }  // namespace octopair::test

@@ -1,7 +1,5 @@
 #include "mpi/ranks.hpp"
 
-#include <algorithm>
-
 namespace octopair::test {
 
 SliceBounds own_slice(std::size_t objects, Spread spread) {

@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "octopair/error.hpp"
 #include "octopair/mpi.hpp"
 #include "support/cases.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 
@@ -59,18 +58,6 @@ std::vector<AnyPair> all_pieces(const std::vector<AnyPair>& own) {
     std::vector<AnyPair> all(bytes.size() / sizeof(AnyPair));
     std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(all)).begin());
     return all;
-}
-/// Returns the message of the Error that `call` throws. Fails if `call` throws no Error, or an Error with another code.
-template <typename Call>
-std::string message_of(ErrorCode code, const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(int(error.code()), int(code)) << error.what();
-        return error.what();
-    }
-    ADD_FAILURE() << "nothing was thrown";
-    return {};
 }
 
 /// Returns true on all ranks if `own` is true on all ranks.

@@ -11,7 +11,6 @@
 #include <functional>
 #include <numbers>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "geometry/vector.hpp"

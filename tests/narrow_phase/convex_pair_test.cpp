@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -182,7 +181,7 @@ double least_overlap(const Thing& a, const Thing& b) {
 TEST(ConvexPair, DepthsAreTheLeastInEveryRotation) {
     RandomStream random(14, 0);
     std::uint64_t meeting = 0;
-    for (std::uint64_t i = 0; i < test::scaled(3000, 30) && !::testing::Test::HasFailure(); ++i) {
+    for (std::uint64_t i = 0; i < scaled(3000, 30) && !::testing::Test::HasFailure(); ++i) {
         SCOPED_TRACE("pair " + std::to_string(i));
         const int kind_a = int(random.below(unsigned(kinds))), kind_b = int(random.below(unsigned(kinds)));
         // Aligned pairs have many directions of equal overlap.
@@ -212,7 +211,7 @@ TEST(ConvexPair, DepthsAreTheLeastInEveryRotation) {
         };
         EXPECT_NEAR(contact(turned(a), turned(b)).depth, depth, 1e-6);
     }
-    EXPECT_GT(meeting, test::scaled(1000, 30));
+    EXPECT_GT(meeting, scaled(1000, 30));
 }
 
 /// A convex polyhedron with integer corners, turned by an integer map: (1, 2, 2, 0) and the like, exact in rationals.
@@ -235,7 +234,7 @@ struct Turned {
 TEST(ConvexPair, HullsThatTouchOrPenetrateByConstruction) {
     RandomStream random(15, 0);
     const auto digit = [&](int most) { return double(random.below(unsigned(2 * most + 1))) - most; };
-    for (std::uint64_t i = 0; i < test::scaled(10'000, 30) && !::testing::Test::HasFailure(); ++i) {
+    for (std::uint64_t i = 0; i < scaled(10'000, 30) && !::testing::Test::HasFailure(); ++i) {
         SCOPED_TRACE("pair " + std::to_string(i));
         const Turned turn{{1 + int(random.below(3)), int(digit(2)), int(digit(2)), int(digit(2))}};
         // Corners below and above z = 0, with at least three at z = 0 around the origin: the hulls share a face in part.

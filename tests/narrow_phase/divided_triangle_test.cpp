@@ -49,7 +49,7 @@ std::set<Face> faces_of_points(const std::vector<Segment3d>& lines) {
 
 TEST(DividedTriangle, VisitsEveryFace) {
     std::size_t most = 0;
-    for (std::uint64_t scene = 0; scene < test::scaled(200, 10); ++scene) {
+    for (std::uint64_t scene = 0; scene < scaled(200, 10); ++scene) {
         SCOPED_TRACE("scene " + std::to_string(scene));
         RandomStream random(18, scene);
         std::vector<Segment3d> lines;

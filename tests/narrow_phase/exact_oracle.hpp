@@ -6,7 +6,6 @@
 #include <array>
 #include <random>
 #include <string>
-#include <vector>
 
 #include "octopair/filters.hpp"
 

@@ -202,7 +202,7 @@ void turn_some(shape::Mesh& mesh, RandomStream& random) {
 }
 
 TEST(MeshClass, SetsOfCellsPenetrateIfTheyShareOne) {
-    const std::uint64_t scenes = test::scaled(3000, 20);
+    const std::uint64_t scenes = scaled(3000, 20);
     Counts counts;
     for (std::uint64_t scene = 0; scene < scenes && !::testing::Test::HasFailure(); ++scene) {
         SCOPED_TRACE("scene " + std::to_string(scene));
@@ -221,7 +221,7 @@ TEST(MeshClass, SetsOfCellsPenetrateIfTheyShareOne) {
 }
 
 TEST(MeshClass, CellsAndLargeBoxesPenetrateIfTheyShareACell) {
-    const std::uint64_t scenes = test::scaled(3000, 20);
+    const std::uint64_t scenes = scaled(3000, 20);
     Counts counts;
     for (std::uint64_t scene = 0; scene < scenes && !::testing::Test::HasFailure(); ++scene) {
         SCOPED_TRACE("scene " + std::to_string(scene));
@@ -293,7 +293,7 @@ std::int64_t volume(const std::array<Cell, 4>& corners) {
 }
 
 TEST(MeshClass, TetrahedraTouchIfAPlaneSeparatesThem) {
-    const std::uint64_t scenes = test::scaled(20'000, 20);
+    const std::uint64_t scenes = scaled(20'000, 20);
     Counts counts;
     for (std::uint64_t scene = 0; scene < scenes && !::testing::Test::HasFailure(); ++scene) {
         SCOPED_TRACE("scene " + std::to_string(scene));

@@ -36,7 +36,7 @@ bool is_inside(const Tetrahedron& corners, const Point3d& place) {
 TEST(RayParity, TellsInsideFromOutsideAlongEveryAxis) {
     std::mt19937 random(4);
     unsigned inside = 0, outside = 0, on_surface = 0;
-    for (unsigned round = 0; round < test::scaled(600, 10); ++round) {
+    for (unsigned round = 0; round < scaled(600, 10); ++round) {
         // Intersecting tetrahedra form one closed mesh. Their corners and edges are often in line with `place`.
         std::vector<Tetrahedron> solids(3);
         std::vector<Triangle3d> faces;
@@ -64,7 +64,7 @@ TEST(RayParity, TellsInsideFromOutsideAlongEveryAxis) {
         }
         ++(around % 2 != 0 ? inside : outside);
     }
-    for (const unsigned some : {inside, outside, on_surface}) EXPECT_GE(some, test::scaled(10, 20));
+    for (const unsigned some : {inside, outside, on_surface}) EXPECT_GE(some, scaled(10, 20));
 }
 
 TEST(RayParity, GoesOneWayAndCountsBothSides) {
@@ -80,7 +80,7 @@ TEST(RayParity, GoesOneWayAndCountsBothSides) {
 TEST(PointOnTriangle, IsThatOfRationalNumbers) {
     std::mt19937 random(5);
     unsigned on = 0;
-    for (unsigned i = 0; i < test::scaled(800, 10); ++i) {
+    for (unsigned i = 0; i < scaled(800, 10); ++i) {
         const auto [triangle, other] = some_pair(i % pair_kinds, random);
         const Point3d place = other[0];
         const bool expected = oracle_meet(triangle, {place, place, place});
@@ -88,7 +88,7 @@ TEST(PointOnTriangle, IsThatOfRationalNumbers) {
             << ::testing::PrintToString(triangle) << ::testing::PrintToString(place);
         on += unsigned(expected);
     }
-    EXPECT_GT(on, test::scaled(30, 10));
+    EXPECT_GT(on, scaled(30, 10));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
 
 #include "geometry/vector.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
@@ -44,7 +43,7 @@ constexpr std::array<unsigned, 4> near_kinds = {0, 1, 2, 3};
 TEST(TriangleGap, APointIsATriangleOfOneCorner) {
     std::mt19937 random(9);
     unsigned on_triangles = 0;
-    for (unsigned i = 0; i < test::scaled(20000, 20); ++i) {
+    for (unsigned i = 0; i < scaled(20000, 20); ++i) {
         const auto& [a, b] = some_pair(i % 8, random);
         for (const Point3d& point : {a[0], b[1], times(plus(b[0], b[1]), 0.5)}) {
             const double expected = triangle_gap({point, point, point}, b).distance, found = triangle_gap(point, b);
@@ -57,13 +56,13 @@ TEST(TriangleGap, APointIsATriangleOfOneCorner) {
             on_triangles += found == 0;
         }
     }
-    EXPECT_GT(on_triangles, test::scaled(20000, 20));
+    EXPECT_GT(on_triangles, scaled(20000, 20));
 }
 
 TEST(TriangleGap, NoPlaneTellsThatItIsLonger) {
     std::mt19937 random(6);
     unsigned apart = 0;
-    for (unsigned i = 0; i < test::scaled(20000, 20); ++i) {
+    for (unsigned i = 0; i < scaled(20000, 20); ++i) {
         const auto pair = some_pair(near_kinds[i % 4], random);
         const auto& [a, b] = pair;
         const TriangleGap gap = triangle_gap(a, b);
@@ -79,12 +78,12 @@ TEST(TriangleGap, NoPlaneTellsThatItIsLonger) {
         for (const Point3d& corner : a) ASSERT_LE(dot(way, minus(corner, on_a)), 1e-11 * gap.distance) << text(pair);
         for (const Point3d& corner : b) ASSERT_GE(dot(way, minus(corner, on_b)), -1e-11 * gap.distance) << text(pair);
     }
-    EXPECT_GT(apart, test::scaled(2000, 20));
+    EXPECT_GT(apart, scaled(2000, 20));
 }
 
 TEST(TriangleGap, ScalesWithTheWorld) {
     std::mt19937 random(7);
-    for (unsigned i = 0; i < test::scaled(2000, 20); ++i) {
+    for (unsigned i = 0; i < scaled(2000, 20); ++i) {
         const auto pair = some_pair(i % 2 == 0 ? 0 : 3, random);
         const double distance = triangle_gap(pair[0], pair[1]).distance;
         for (const int exponent : {-1000, -300, 300, 1020}) {
@@ -112,7 +111,7 @@ TEST(TriangleGap, OfDegenerateTriangles) {
 TEST(TriangleContact, IsThatOfRationalNumbers) {
     std::mt19937 random(8);
     std::array<unsigned, 4> seen = {};
-    for (unsigned i = 0; i < test::scaled(1500, 10); ++i) {
+    for (unsigned i = 0; i < scaled(1500, 10); ++i) {
         const auto pair = some_pair(near_kinds[i % 4], random);
         const auto& [a, b] = pair;
         const TriangleContact contact = triangle_contact(a, b);
@@ -129,7 +128,7 @@ TEST(TriangleContact, IsThatOfRationalNumbers) {
         }
         ++seen[std::size_t(contact.meeting)];
     }
-    for (const unsigned some : seen) EXPECT_GT(some, test::scaled(10, 10));
+    for (const unsigned some : seen) EXPECT_GT(some, scaled(10, 10));
 }
 
 TEST(TriangleContact, IsAPolygonInOrder) {
@@ -146,7 +145,7 @@ TEST(TriangleDepth, IsTheShortestWayOut) {
     std::mt19937 random(9);
     std::uniform_real_distribution<double> at(-1, 1);
     unsigned deep = 0;
-    for (unsigned i = 0; i < test::scaled(10000, 20); ++i) {
+    for (unsigned i = 0; i < scaled(10000, 20); ++i) {
         const auto pair = some_pair(near_kinds[i % 4], random);
         const auto& [a, b] = pair;
         if (!triangles_meet(a, b)) continue;
@@ -163,7 +162,7 @@ TEST(TriangleDepth, IsTheShortestWayOut) {
         const Point3d some = {at(random), at(random), at(random)};
         ASSERT_TRUE(triangles_meet(a, moved(times(some, 0.999 * way.depth / length(some))))) << text(pair);
     }
-    EXPECT_GT(deep, test::scaled(500, 20));
+    EXPECT_GT(deep, scaled(500, 20));
 }
 
 }  // namespace

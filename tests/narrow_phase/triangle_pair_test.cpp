@@ -8,7 +8,6 @@
 #include <cfloat>
 #include <cmath>
 #include <random>
-#include <string>
 
 #include "narrow_phase/exact/orientation.hpp"
 #include "narrow_phase/exact/triangle_prefilter.hpp"
@@ -36,7 +35,7 @@ int rounded_plane_side(const std::array<Point3d, 4>& at) {
 TEST(Orientation, IsThatOfRationalNumbers) {
     std::mt19937 random(1);
     unsigned misjudged = 0, zero = 0;
-    for (unsigned i = 0; i < test::scaled(4000, 10); ++i) {
+    for (unsigned i = 0; i < scaled(4000, 10); ++i) {
         const auto [a, b] = some_pair(i % pair_kinds, random);
         const std::array<Point3d, 4> corners = {a[0], b[0], b[1], b[2]};
         const int expected = oracle_plane_side(corners);
@@ -44,8 +43,8 @@ TEST(Orientation, IsThatOfRationalNumbers) {
         misjudged += unsigned(rounded_plane_side(corners) != expected);
         zero += unsigned(expected == 0);
     }
-    EXPECT_GT(misjudged, test::scaled(200, 10));
-    EXPECT_GT(zero, test::scaled(200, 10));
+    EXPECT_GT(misjudged, scaled(200, 10));
+    EXPECT_GT(zero, scaled(200, 10));
 }
 
 TEST(Orientation, HoldsAtTheEndsOfFloat64) {
@@ -63,7 +62,7 @@ TEST(Orientation, HoldsAtTheEndsOfFloat64) {
 TEST(TrianglePair, MeetsWhereRationalNumbersDo) {
     std::mt19937 random(2);
     std::array<unsigned, 2> seen = {}, beyond = {};
-    for (unsigned i = 0; i < test::scaled(1200, 10); ++i) {
+    for (unsigned i = 0; i < scaled(1200, 10); ++i) {
         const auto pair = some_pair(i % pair_kinds, random);
         const bool meet = oracle_meet(pair[0], pair[1]);
         ASSERT_EQ(triangles_meet(pair[0], pair[1]), meet) << text(pair);
@@ -72,14 +71,14 @@ TEST(TrianglePair, MeetsWhereRationalNumbersDo) {
         ASSERT_EQ(meet_beyond_shared(pair[0], pair[1]), meet_beyond) << text(pair);
         if (meet) ++beyond[meet_beyond];
     }
-    for (const unsigned some : {seen[0], seen[1], beyond[0], beyond[1]}) EXPECT_GT(some, test::scaled(90, 10));
+    for (const unsigned some : {seen[0], seen[1], beyond[0], beyond[1]}) EXPECT_GT(some, scaled(90, 10));
 }
 
 TEST(TrianglePrefilter, SaysNothingWrongAndTheSameOfOneAsOfMany) {
     std::mt19937 random(10);
     std::vector<Triangle3d> first, second;
     std::vector<Pair> pairs;
-    for (std::uint32_t i = 0; i < test::scaled(40003, 20); ++i) {
+    for (std::uint32_t i = 0; i < scaled(40003, 20); ++i) {
         const auto [a, b] = some_pair(i % pair_kinds, random);
         first.push_back(a);
         second.push_back(b);
@@ -103,7 +102,7 @@ TEST(TrianglePrefilter, SaysNothingWrongAndTheSameOfOneAsOfMany) {
 TEST(TrianglePrefilter, SaysNothingWrongWhereProductsOverflowOrVanish) {
     std::mt19937 random(11);
     for (const int exponent : {-1070, -700, -360, -300, 300, 336, 339, 342, 500, 508, 512, 700, 1015}) {
-        for (std::uint32_t i = 0; i < test::scaled(2000, 20); ++i) {
+        for (std::uint32_t i = 0; i < scaled(2000, 20); ++i) {
             auto [a, b] = some_pair(i % pair_kinds, random);
             for (Triangle3d* triangle : {&a, &b}) {
                 for (Point3d& corner : *triangle) {
@@ -132,7 +131,7 @@ TrianglePair rearranged(TrianglePair pair, std::mt19937& random) {
 
 TEST(TrianglePair, DoesNotDependOnOrderSidesOrMirrors) {
     std::mt19937 random(3);
-    for (unsigned i = 0; i < test::scaled(40000, 20); ++i) {
+    for (unsigned i = 0; i < scaled(40000, 20); ++i) {
         const auto pair = some_pair(i % pair_kinds, random);
         const auto other = rearranged(pair, random);
         ASSERT_EQ(triangles_meet(pair[0], pair[1]), triangles_meet(other[0], other[1])) << text(pair);

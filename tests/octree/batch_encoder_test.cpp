@@ -17,7 +17,7 @@ namespace octopair::test {
 namespace {
 
 struct Encoding : ::testing::TestWithParam<std::string> {
-    Encoding() : boxes(make_boxes(GetParam(), 20'000, 3)), objects{std::span<const Box3f>(boxes)} {
+    Encoding() : boxes(make_boxes(GetParam(), 20'000, 3)), objects{boxes} {
         layout = make_layout(BoxSource(objects, nullptr, 0), {});
         encoder.emplace(layout.space, layout.directory, no_list);
     }

@@ -207,8 +207,7 @@ struct RoundedScene {
         const bool padded = random() % 3 == 0;
         const std::span<const double> paddings = padded ? std::span<const double>(padding) : std::span<const double>();
         const bool is_narrow = random() % 2 == 0;
-        objects = is_narrow ? Objects{std::span<const Box3f>(narrow), paddings}
-                            : Objects{std::span<const Box3d>(wide), paddings};
+        objects = is_narrow ? Objects{narrow, paddings} : Objects{wide, paddings};
         source.emplace(objects, nullptr, random() % 2 == 0 ? 0 : scale / 16);
         std::vector<Entry> entries(count);
         EXPECT_TRUE(source->load(0, entries));

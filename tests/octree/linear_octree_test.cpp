@@ -9,9 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
-#include <random>
 
 #include "samples/scenes.hpp"
 
@@ -45,9 +43,7 @@ bool same_entries(std::span<const CellEntry> a, std::span<const CellEntry> b) {
 class Scene : public ::testing::TestWithParam<std::string> {
 protected:
     Scene()
-        : boxes_(samples::make_scene(GetParam(), scene_size, 7)),
-          objects_{std::span<const Box3f>(boxes_), {}},
-          source_(objects_, nullptr, 0) {
+        : boxes_(samples::make_scene(GetParam(), scene_size, 7)), objects_{boxes_, {}}, source_(objects_, nullptr, 0) {
         NoPairs none;
         SerialExecutor serial(none);
         octree_.build(source_, serial, {});

@@ -28,7 +28,7 @@ bool overlap(const CellBox& a, const CellBox& b) {
 /// A linear octree, and the source of its entries.
 struct Linear {
     /// Borrows `boxes`.
-    explicit Linear(const std::vector<Box3f>& boxes) : objects{std::span<const Box3f>(boxes)} {
+    explicit Linear(const std::vector<Box3f>& boxes) : objects{boxes} {
         NoPairs none;
         SerialExecutor executor(none);
         octree.build(source, executor, {});
@@ -101,8 +101,8 @@ class MutableOctreeTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(MutableOctreeTest, FindsAllOnce) {
     for (const std::uint64_t objects : {1u, 40u, 3000u}) {
-        const std::vector<Box3f> boxes = test::make_boxes(GetParam(), objects, 7);
-        const std::vector<Box3f> others = test::make_boxes(GetParam(), objects, 8);
+        const std::vector<Box3f> boxes = make_boxes(GetParam(), objects, 7);
+        const std::vector<Box3f> others = make_boxes(GetParam(), objects, 8);
         Changing octree(boxes);
         for (std::size_t i = 0; i < boxes.size(); i += 1 + boxes.size() / 60) {
             octree.expect_found(boxes[i]);
@@ -113,8 +113,8 @@ TEST_P(MutableOctreeTest, FindsAllOnce) {
 
 TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
     constexpr std::uint32_t objects = 1500;
-    const std::vector<Box3f> boxes = test::make_boxes(GetParam(), objects, 9);
-    const std::vector<Box3f> others = test::make_boxes(GetParam(), objects, 10);
+    const std::vector<Box3f> boxes = make_boxes(GetParam(), objects, 9);
+    const std::vector<Box3f> others = make_boxes(GetParam(), objects, 10);
     Changing octree(boxes);
     std::mt19937 random(11);
     const std::uint32_t size = std::uint32_t(std::min(boxes.size(), others.size()));
@@ -128,7 +128,7 @@ TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(all_kind_names()), param_name);
 
 /// Accepts every object.
 class TakeAll final : public NearestVisitor {
@@ -170,7 +170,7 @@ bool stopped_after(std::chrono::nanoseconds delay, const Linear& linear, Mutable
 
 TEST(MutableOctreeTest, AStoppedBuildLeavesNothing) {
     constexpr unsigned moments = 12;
-    const std::vector<Box3f> boxes = test::make_boxes("uniform", 50'000, 1);
+    const std::vector<Box3f> boxes = make_boxes("uniform", 50'000, 1);
     const Linear linear(boxes);
     MutableOctree octree;
     const auto begin = std::chrono::steady_clock::now();

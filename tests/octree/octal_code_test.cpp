@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "octopair/error.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
@@ -35,18 +36,6 @@ rc::Gen<std::pair<Digits, Digits>> related_digits() {
 
 bool is_prefix(const Digits& a, const Digits& b) {
     return a.size() <= b.size() && std::equal(a.begin(), a.end(), b.begin());
-}
-
-/// Returns the code of the refusal, or nothing if the call succeeded.
-template <typename Call>
-std::optional<ErrorCode> refusal(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_FALSE(std::string(error.what()).empty());
-        return error.code();
-    }
-    return {};
 }
 
 TEST(OctalCodePaper, FigureFourIsVisitedInItsOrder) {
@@ -121,25 +110,25 @@ TEST(OctalCode, TextIsRefused) {
     for (const char* text :
          {"", "{", "}", "1", "{1", "1}", "{1,}", "{,1}", "{1 2}", "{9}", "{-1}", "{1,0,2}", "{a}", "{1}x", "{1,,2}",
           "{0x1}", "{4294967297}", "{99999999999999999999}", "{1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1,1}"}) {
-        EXPECT_EQ(refusal([&] { OctalCode::from_text(text); }), ErrorCode::bad_input) << text;
+        EXPECT_EQ(code_of([&] { OctalCode::from_text(text); }), ErrorCode::bad_input) << text;
     }
 }
 
 TEST(OctalCode, IntegersAreRefused) {
     for (const std::uint64_t integer : {9ull, 19ull, 101ull, 1002003ull, 18446744073709551615ull}) {
-        EXPECT_EQ(refusal([&] { OctalCode::from_integer(integer); }), ErrorCode::bad_input) << integer;
+        EXPECT_EQ(code_of([&] { OctalCode::from_integer(integer); }), ErrorCode::bad_input) << integer;
     }
     const OctalCode code = OctalCode::from_integer(314);
-    EXPECT_EQ(refusal([&] { (void)code.integer(2); }), ErrorCode::bad_input);
-    EXPECT_EQ(refusal([&] { (void)code.integer(20); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([&] { (void)code.integer(2); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([&] { (void)code.integer(20); }), ErrorCode::bad_input);
     EXPECT_EQ(code.integer(19), 3140000000000000000u);
-    EXPECT_EQ(refusal([] { (void)OctalCode::from_digits(Digits(20, 7)).integer(); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([] { (void)OctalCode::from_digits(Digits(20, 7)).integer(); }), ErrorCode::bad_input);
 }
 
 TEST(OctalCode, DigitsAreRefused) {
-    EXPECT_EQ(refusal([] { OctalCode::from_digits(Digits{1, 8}); }), ErrorCode::bad_input);
-    EXPECT_EQ(refusal([] { OctalCode::from_digits(Digits(22, 0)); }), ErrorCode::bad_input);
-    EXPECT_EQ(refusal([] { OctalCode::from_digits(Digits(21, 0)); }), std::nullopt);
+    EXPECT_EQ(code_of([] { OctalCode::from_digits(Digits{1, 8}); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([] { OctalCode::from_digits(Digits(22, 0)); }), ErrorCode::bad_input);
+    EXPECT_EQ(code_of([] { OctalCode::from_digits(Digits(21, 0)); }), std::nullopt);
 }
 
 RC_GTEST_PROP(OctalCodeProperty, DigitsRoundTrip, ()) {

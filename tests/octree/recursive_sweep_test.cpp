@@ -13,6 +13,7 @@
 #include "octree/given_rule.hpp"
 #include "octree/scan_memory.hpp"
 #include "octree/sweep/start_order.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
@@ -171,13 +172,8 @@ TEST(RecursiveSweep, EndsIfBoxesChange) {
     CollectingWriter writer;
     SerialExecutor executor(writer);
     const SweepInput join{EntryList(rule, row_ids), EntryList(rule, column_ids), false, {}};
-    try {
-        recursive_sweep(context, join, executor);
-        FAIL() << "the sweep did not notice the change";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::bad_input);
-        EXPECT_STREQ(error.what(), "an object changed while it was read");
-    }
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { recursive_sweep(context, join, executor); }),
+              "an object changed while it was read");
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, SweepsOf,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "octopair/error.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::paper {
 namespace {
@@ -70,13 +71,9 @@ TEST(Study, StopsWhenAsked) {
     const auto progress = [&](std::string_view, double) {
         if (++said == 5) stop.request_stop();
     };
-    try {
-        (void)measure({"uniform", {1000}, 2, 5, 20}, progress, stop.get_token());
-        FAIL() << "measure() ignored the stop request";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-        EXPECT_EQ(said, 5);
-    }
+    const auto call = [&] { (void)measure({"uniform", {1000}, 2, 5, 20}, progress, stop.get_token()); };
+    (void)test::error_of(ErrorCode::cancelled, call);
+    EXPECT_EQ(said, 5);
 }
 
 TEST(Study, UnknownSceneIsRefused) { EXPECT_THROW((void)measure({"nothing", {1000}, 1, 3, 20}, {}, {}), Error); }

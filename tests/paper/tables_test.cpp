@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "paper/published.hpp"
 
 namespace octopair::paper {

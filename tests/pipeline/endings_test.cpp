@@ -6,6 +6,7 @@
 
 #include "octopair/octopair.hpp"
 #include "pipeline/flow.hpp"
+#include "support/calls.hpp"
 #include "support/reentry.hpp"
 
 namespace octopair::test {
@@ -19,9 +20,7 @@ struct Ending {
 class Endings : public ::testing::TestWithParam<Ending> {
 protected:
     Options options() const {
-        Options options;
-        options.order = GetParam().order;
-        options.buffer_bytes = 1 << 20;
+        Options options{.order = GetParam().order, .buffer_bytes = 1 << 20};
         return options;
     }
 
@@ -68,12 +67,8 @@ TEST_P(Endings, FiltersThrowWhereTheirPairIs) {
             return true;
         }));
         Outcome found;
-        try {
-            pipeline.run(*engine_, all_of(boxes_), into(found), asked);
-            ADD_FAILURE() << "nothing was thrown";
-        } catch (const Error& error) {
-            EXPECT_STREQ(error.what(), "a bad pair");
-        }
+        const auto run = [&] { pipeline.run(*engine_, all_of(boxes_), into(found), asked); };
+        EXPECT_EQ(error_of(ErrorCode::bad_input, run), "a bad pair");
         EXPECT_LE(found.pairs.size(), place);
         EXPECT_TRUE(std::equal(found.pairs.begin(), found.pairs.end(), pairs.begin()));
         EXPECT_LT(place - found.pairs.size(), 4096u);  // at most the block of the bad pair is lost
@@ -98,12 +93,7 @@ TEST_P(Endings, WhatTheSinkThrowsReachesTheCaller) {
 TEST_P(Endings, WantOfMemoryIsAnError) {
     Pipeline pipeline(GetParam().threads);
     pipeline.add(make_filter("hungry", [](Pair) -> bool { throw std::bad_alloc(); }));
-    try {
-        pipeline.run(*engine_, all_of(boxes_), {}, options());
-        ADD_FAILURE() << "nothing was thrown";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::resource_limit);
-    }
+    (void)error_of(ErrorCode::resource_limit, [&] { pipeline.run(*engine_, all_of(boxes_), {}, options()); });
 }
 
 TEST_P(Endings, WhatTheEngineThrowsReachesTheCaller) {
@@ -111,13 +101,7 @@ TEST_P(Endings, WhatTheEngineThrowsReachesTheCaller) {
     boxes[77].min[1] = 1e30F;
     Pipeline pipeline(GetParam().threads);
     pipeline.add(std::make_unique<LotFilter>(5));
-    try {
-        pipeline.run(*engine_, all_of(boxes), {}, options());
-        ADD_FAILURE() << "nothing was thrown";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::bad_input);
-        EXPECT_NE(std::string(error.what()).find("77"), std::string::npos) << error.what();
-    }
+    expect_error(ErrorCode::bad_input, "77", [&] { pipeline.run(*engine_, all_of(boxes), {}, options()); });
 }
 
 /// Tests stop requests during a call. timing_test.cpp tests how soon the call ends.
@@ -131,12 +115,8 @@ TEST_P(Endings, RequestsDuringACallHold) {
     }));
     std::uint64_t came_out = 0;
     const CollisionSink sink = [&](const Batch& batch) { came_out += batch.pairs().size(); };
-    try {
-        pipeline.run(*engine_, all_of(boxes_), sink, options(), source.get_token());
-        ADD_FAILURE() << "not cancelled";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    }
+    (void)error_of(ErrorCode::cancelled,
+                   [&] { pipeline.run(*engine_, all_of(boxes_), sink, options(), source.get_token()); });
     EXPECT_LT(came_out, engine_->count_pairs(all_of(boxes_)));
 }
 
@@ -151,26 +131,16 @@ TEST_P(Endings, ARequestDuringTheLastPairHolds) {
         if (++seen == all) source.request_stop();
         return true;
     }));
-    try {
-        pipeline.run(*engine_, all_of(boxes_), {}, options(), source.get_token());
-        ADD_FAILURE() << "not cancelled";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    }
+    (void)error_of(ErrorCode::cancelled,
+                   [&] { pipeline.run(*engine_, all_of(boxes_), {}, options(), source.get_token()); });
     EXPECT_EQ(seen, all);
 }
 
 TEST_P(Endings, ARequestMadeBeforeTheCallHolds) {
-    std::stop_source source;
-    source.request_stop();
     Pipeline pipeline(GetParam().threads);
     pipeline.add(std::make_unique<LotFilter>(5));
-    try {
-        pipeline.run(*engine_, all_of(boxes_), {}, options(), source.get_token());
-        ADD_FAILURE() << "not cancelled";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    }
+    (void)error_of(ErrorCode::cancelled,
+                   [&] { pipeline.run(*engine_, all_of(boxes_), {}, options(), requested_stop()); });
 }
 
 }  // namespace

@@ -28,10 +28,7 @@ TEST(PipelineEngines, GiveTheSameBytes) {
 #endif
     for (const Order order : {Order::octal, Order::ascending}) {
         for (const std::uint64_t limit : {std::uint64_t(5000), ~std::uint64_t(0)}) {
-            Options options;
-            options.order = order;
-            options.buffer_bytes = 1 << 20;
-            options.limit = limit;
+            Options options{.order = order, .limit = limit, .buffer_bytes = 1 << 20};
             const Outcome expected = outcome_of(*engines[0], boxes, options);
             EXPECT_GE(expected.pairs.size(), 5000u);
             for (std::size_t i = 1; i < engines.size(); ++i) {

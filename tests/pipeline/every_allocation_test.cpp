@@ -47,8 +47,7 @@ TEST_P(EveryAllocation, OfAPipelineMayFail) {
     };
     const ShapedObjects objects = scene.objects();
     const std::vector<Box3d> boxes = boxes_of(objects);
-    Options search;
-    search.margin = options.margin;
+    Options search{.margin = options.margin};
     const auto run = [&](Run& made) {
         if (!made.pipeline) {
             auto pipeline = std::make_unique<Pipeline>(GetParam());

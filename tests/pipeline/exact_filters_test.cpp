@@ -11,7 +11,7 @@
 #include "octopair/error.hpp"
 #include "pipeline/exact_scene.hpp"
 #include "samples/random.hpp"
-#include "support/error_place.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {

@@ -45,8 +45,7 @@ inline std::vector<Collision> find(const Scene& scene, const ExactOptions& optio
     pipeline.add(make_exact_object_filter(objects, options));
     pipeline.add(make_exact_feature_filter(objects, options));
     std::vector<Collision> collisions;
-    Options search;
-    search.margin = options.margin;
+    Options search{.margin = options.margin};
     pipeline.run(
         *make_local_engine(threads), {std::span(boxes), scene.padding},
         [&](const Batch& batch) {

@@ -16,7 +16,7 @@
 namespace octopair::test {
 namespace {
 
-class PipelineFloatingPoint : public ::testing::TestWithParam<test::CallerState> {};
+class PipelineFloatingPoint : public ::testing::TestWithParam<CallerState> {};
 
 /// Input values of shapes, poses and triangles, before any computation.
 struct Raw {
@@ -78,7 +78,7 @@ Found find(const Raw& raw, const ExactOptions& exact, const Options& options) {
     shapes.add(make_oriented_box_filter(objects, exact.margin));
     shapes.add(make_exact_object_filter(objects, exact));
     shapes.add(make_exact_feature_filter(objects, exact));
-    shapes.run(*engine, Objects{std::span(boxes)}, sink, options);
+    shapes.run(*engine, Objects{boxes}, sink, options);
     Pipeline triangles(2);
     triangles.add(make_triangle_filter({raw.triangles}));
     triangles.run(*engine, Objects{std::span<const Box3f>(boxes_of(raw.triangles, 2))}, sink);
@@ -92,12 +92,12 @@ TEST_P(PipelineFloatingPoint, ChangesNothing) {
     const Found expected = find(raw, exact, options);
     EXPECT_FALSE(expected.pairs.empty());
     Found found;
-    test::call_in(GetParam(), [&] { found = find(raw, exact, options); });
+    call_in(GetParam(), [&] { found = find(raw, exact, options); });
     EXPECT_TRUE(same_sequence(found.pairs, expected.pairs));
     EXPECT_TRUE(same_sequence(found.numbers, expected.numbers));
 }
 
-INSTANTIATE_TEST_SUITE_P(States, PipelineFloatingPoint, ::testing::ValuesIn(test::caller_states()),
+INSTANTIATE_TEST_SUITE_P(States, PipelineFloatingPoint, ::testing::ValuesIn(caller_states()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -55,6 +54,6 @@ inline CollisionSink into(Outcome& outcome) {
     };
 }
 
-inline Objects all_of(const std::vector<Box3f>& boxes) { return {std::span<const Box3f>(boxes)}; }
+inline Objects all_of(const std::vector<Box3f>& boxes) { return {boxes}; }
 
 }  // namespace octopair::test

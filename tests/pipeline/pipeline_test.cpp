@@ -11,14 +11,14 @@
 
 #include "octopair/octopair.hpp"
 #include "pipeline/flow.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {
 
 std::vector<Pair> engine_pairs(const std::vector<Box3f>& boxes, Order order) {
-    Options options;
-    options.order = order;
+    Options options{.order = order};
     return find_pairs(boxes, options);
 }
 
@@ -59,9 +59,7 @@ std::vector<Arrangement> arrangements() {
 class AnyPipeline : public ::testing::TestWithParam<Arrangement> {
 protected:
     Options options() const {
-        Options options;
-        options.order = GetParam().order;
-        options.buffer_bytes = GetParam().buffer_bytes;
+        Options options{.order = GetParam().order, .buffer_bytes = GetParam().buffer_bytes};
         return options;
     }
 };
@@ -164,8 +162,7 @@ TEST(Pipeline, WithoutFiltersIsTheEngine) {
     EXPECT_EQ(pipeline.run(*engine, all_of(boxes), into(found)).collisions, pairs.size());
     EXPECT_TRUE(same_sequence(found.pairs, pairs));
     EXPECT_TRUE(found.notes.empty());
-    Options limited;
-    limited.limit = 10;
+    Options limited{.limit = 10};
     const PipelineSummary counted = pipeline.run(*engine, all_of(boxes), {}, limited);
     EXPECT_EQ(counted.collisions, 10u);
     EXPECT_TRUE(counted.truncated);
@@ -239,10 +236,8 @@ TEST(Pipeline, CountsPairsThatAreThere) {
     const PipelineSummary limited = Pipeline(2).filter(pairs, {}, {.limit = 7});
     EXPECT_EQ(limited.collisions, 7u);
     EXPECT_TRUE(limited.truncated);
-    std::stop_source stop;
-    stop.request_stop();
     Outcome none;
-    EXPECT_THROW(two_filters(2).filter(pairs, into(none), {}, stop.get_token()), Error);
+    EXPECT_THROW(two_filters(2).filter(pairs, into(none), {}, requested_stop()), Error);
     EXPECT_TRUE(none.pairs.empty());
 }
 
@@ -332,9 +327,7 @@ TEST(Pipeline, FiltersOnAllItsThreadsAtOnce) {
         auto filter = std::make_unique<Meeting>(3);
         const Meeting& meeting = *filter;
         pipeline.add(std::move(filter));
-        Options options;
-        options.order = order;
-        options.buffer_bytes = 1 << 20;
+        Options options{.order = order, .buffer_bytes = 1 << 20};
         pipeline.run(*make_local_engine(2), all_of(boxes), {}, options);
         EXPECT_TRUE(meeting.met());
     }

@@ -14,7 +14,7 @@
 #include "octopair/filters.hpp"
 #include "octopair/octopair.hpp"
 #include "support/compare.hpp"
-#include "support/error_place.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
@@ -54,8 +54,7 @@ Outcome run(const Soup& first, const TriangleOptions& options, const Soup* secon
         outcome.findings.insert(outcome.findings.end(), batch.findings().begin(), batch.findings().end());
     };
     const auto boxes = boxes_of(first.triangles);
-    Options search;
-    search.margin = options.margin;
+    Options search{.margin = options.margin};
     if (second != nullptr) {
         const auto second_boxes = boxes_of(second->triangles);
         pipeline.run(*engine, Join{{std::span(boxes)}, {std::span(second_boxes)}}, sink, search);
@@ -89,9 +88,7 @@ TEST(TriangleFilter, FindsWhatAllPairsHold) {
                     if (counts) expected.push_back({i, j});
                 }
             }
-            TriangleOptions options;
-            options.adjacent = adjacent;
-            options.margin = margin;
+            TriangleOptions options{.adjacent = adjacent, .margin = margin};
             const Outcome outcome = run(soup, options);
             EXPECT_TRUE(same_sequence(outcome.pairs, expected)) << int(adjacent) << " " << margin;
             EXPECT_GT(expected.size(), 300U);
@@ -108,17 +105,14 @@ TEST(TriangleFilter, JoinsHaveNoNeighbours) {
             if (triangles_meet(first.triangles[i], second.triangles[j])) expected.push_back({i, j});
         }
     }
-    TriangleOptions options;
-    options.adjacent = AdjacentTriangles::exclude;
+    TriangleOptions options{.adjacent = AdjacentTriangles::exclude};
     EXPECT_TRUE(same_sequence(run(first, options, &second).pairs, expected));
     EXPECT_GT(expected.size(), 300U);
 }
 
 TEST(TriangleFilter, ReportsHowTheyMeetOrTheirDistance) {
     const Soup soup(700, 4);
-    TriangleOptions options;
-    options.margin = 0.2;
-    options.features = true;
+    TriangleOptions options{.margin = 0.2, .features = true};
     const Outcome outcome = run(soup, options);
     std::array<unsigned, 6> seen = {};
     for (std::size_t k = 0; k < outcome.pairs.size(); ++k) {
@@ -185,35 +179,27 @@ TEST(TriangleFilter, BoxesAreTheSmallestOnAnyThreads) {
     }
 }
 
-template <typename Call>
-std::string message_of(const Call& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::bad_input);
-        return error.what();
-    }
-    return "nothing";
-}
-
 TEST(TriangleFilter, NamesWhatIsWrong) {
     std::vector<Triangle3d> triangles(3);
     const std::vector<std::uint32_t> owners(2);
-    EXPECT_EQ(message_of([&] { make_triangle_filter({triangles, owners}); }), "2 owners, but 3 triangles");
-    TriangleOptions options;
-    options.margin = -1;
-    EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}, options); }),
+    EXPECT_EQ(error_of(ErrorCode::bad_input,
+                       [&] {
+                           make_triangle_filter({triangles, owners});
+                       }),
+              "2 owners, but 3 triangles");
+    TriangleOptions options{.margin = -1};
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { make_triangle_filter({triangles}, options); }),
               "the margin must be finite and not below 0");
     std::vector<Box3f> room(2);
-    EXPECT_EQ(message_of([&] { boxes_of(triangles, std::span(room)); }),
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { boxes_of(triangles, std::span(room)); }),
               "boxes_of: the output has 2 boxes for 3 triangles");
     for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
         for (const std::size_t i : {1U, 2U}) {
             auto some = triangles;
             some[i][1][2] = wrong;
             const auto message = "triangle " + std::to_string(i) + " has a corner that is not finite";
-            EXPECT_EQ(message_of([&] { boxes_of(some); }), message);
-            EXPECT_EQ(message_of([&] { make_triangle_filter({some}); }), message);
+            EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { boxes_of(some); }), message);
+            EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { make_triangle_filter({some}); }), message);
         }
     }
     auto second = triangles;
@@ -222,8 +208,10 @@ TEST(TriangleFilter, NamesWhatIsWrong) {
     expect_place([&] { (void)make_triangle_filter({second}); }, 1, 0);
     expect_place([&] { (void)make_triangle_filter({triangles}, {}, &wrong_second); }, 1, 1);
     triangles[2][1][0] = std::nan("");
-    EXPECT_EQ(message_of([&] { boxes_of(triangles); }), "triangle 2 has a corner that is not finite");
-    EXPECT_EQ(message_of([&] { make_triangle_filter({triangles}); }), "triangle 2 has a corner that is not finite");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { boxes_of(triangles); }),
+              "triangle 2 has a corner that is not finite");
+    EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { make_triangle_filter({triangles}); }),
+              "triangle 2 has a corner that is not finite");
 }
 
 }  // namespace

@@ -16,25 +16,19 @@
 #include "processes/fault_plan.hpp"
 #include "processes/leftovers.hpp"
 #include "samples/random.hpp"
+#include "support/calls.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
-using test::Asked;
-using test::expect_right;
-using test::Fault;
-using test::FaultKind;
-using test::How;
-using test::Scene;
-
-class Applications : public test::Processes {
+class Applications : public Processes {
 protected:
     /// Makes calls with all kinds of faults.
     void call_with_faults() {
-        test::MappedPlan plan;
+        MappedPlan plan;
         {
-            const auto engine = test::make_faulty_engine(3);
+            const auto engine = make_faulty_engine(3);
             for (int i = 0; i < 12; ++i) {
                 const auto kind = FaultKind(i % 3);
                 plan.set(std::vector<Fault>{{.step = Step::encode, .kind = kind}, {.step = Step::scan, .kind = kind}});
@@ -44,8 +38,7 @@ protected:
             EXPECT_EQ(faults.ended, 16u);
             EXPECT_EQ(faults.stopped, 8u);
         }
-        EXPECT_TRUE(
-            test::comes_true([] { return test::children_of(::getpid()).empty(); }, std::chrono::milliseconds(500)));
+        EXPECT_TRUE(comes_true([] { return children_of(::getpid()).empty(); }, std::chrono::milliseconds(500)));
     }
 
     const std::unique_ptr<Engine> local_ = make_local_engine(1);
@@ -110,11 +103,11 @@ private:
 };
 
 TEST_F(Applications, MayBeInterruptedAllTheTime) {
-    const Scene large("uniform", test::scaled(1'000'000, 10), 1);  // signals interrupt the allocation of the copy
+    const Scene large("uniform", scaled(1'000'000, 10), 1);  // signals interrupt the allocation of the copy
     const Interrupter interrupter;
     call_with_faults();
     const auto engine = make_process_engine(2);
-    for (const Asked& asked : test::all_ways()) expect_right(*engine, large, asked);
+    for (const Asked& asked : all_ways()) expect_right(*engine, large, asked);
     EXPECT_GT(timer_signals.load(), 100u);
 }
 
@@ -122,13 +115,13 @@ TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
     const auto engine = make_process_engine(3);
     const auto message = [&](Engine& asked_engine, const Scene& scene, const Asked& asked) -> std::string {
         try {
-            (void)test::ask(asked_engine, scene, asked);
+            (void)ask(asked_engine, scene, asked);
         } catch (const Error& error) {
             return std::to_string(int(error.code())) + error.what();
         }
         return "no error";
     };
-    samples::RandomStream random(test::test_seed(1), 1);
+    samples::RandomStream random(test_seed(1), 1);
     for (int i = 0; i < 30; ++i) {
         Scene bad = scene_;
         for (auto wrong = 1 + random.below(3); wrong > 0; --wrong) {
@@ -137,8 +130,8 @@ TEST_F(Applications, GetTheMessageOfTheLocalEngineForABadBox) {
             if (i % 5 == 0) bad.second[index / 2].min[0] = std::numeric_limits<float>::infinity();
             if (i % 7 == 0) bad.padding[index] = -1;
         }
-        bad.wide_first = test::Scene("uniform", 1, 1).wide_first;
-        Asked asked = test::random_call(random.next());
+        bad.wide_first = Scene("uniform", 1, 1).wide_first;
+        Asked asked = random_call(random.next());
         asked.wide = false;
         SCOPED_TRACE(asked.describe());
         const std::string expected = message(*local_, bad, asked);
@@ -156,9 +149,7 @@ TEST_F(Applications, MayThrowFromTheirSinks) {
     for (const Order order : {Order::octal, Order::ascending}) {
         for (const int at : {1, 2, 4}) {
             int calls = 0;
-            Options options;
-            options.order = order;
-            options.buffer_bytes = 0;
+            Options options{.order = order, .buffer_bytes = 0};
             const PairSink sink = [&](std::span<const Pair>) {
                 if (++calls == at) throw Mine();
             };
@@ -179,7 +170,7 @@ TEST_F(Applications, MayThrowFromTheirSinks) {
 TEST_F(Applications, SeeProgressWhilePairsAreSorted) {
     using Clock = std::chrono::steady_clock;
     // The workers sort pairs for 0.3 to 0.5 of the time. Meanwhile the client checks them several times.
-    const Scene scene("world10", test::scaled(1'000'000, 20), 1);
+    const Scene scene("world10", scaled(1'000'000, 20), 1);
     const auto engine = make_process_engine(2);
     PairList list;
     double least = 1;  // least part of a call that passed after the report of 0.85
@@ -200,9 +191,9 @@ TEST_F(Applications, SeeProgressWhilePairsAreSorted) {
 TEST_F(Applications, MayLimitThePairs) {
     const Scene scene("world10", 14'000, 1);
     const auto engine = make_process_engine(3);
-    const std::uint64_t all = test::ask(*local_, scene, {.how = How::count}).count;
+    const std::uint64_t all = ask(*local_, scene, {.how = How::count}).count;
     for (const std::uint64_t limit : {std::uint64_t(0), std::uint64_t(1), all / 2, all - 1, all, all + 1}) {
-        for (Asked asked : test::all_ways()) {
+        for (Asked asked : all_ways()) {
             asked.limit = limit;
             expect_right(*engine, scene, asked);
         }
@@ -216,8 +207,8 @@ TEST_F(Applications, MayCallFromManyThreads) {
     for (std::uint64_t i = 0; i < 4; ++i) {
         threads.emplace_back([&, i] {
             for (std::uint64_t call = 0; call < 5; ++call) {
-                const Asked asked = test::random_call(i * 10 + call);
-                EXPECT_EQ(test::ask(*engine, scene_, asked), test::ask(*make_local_engine(1), scene_, asked));
+                const Asked asked = random_call(i * 10 + call);
+                EXPECT_EQ(ask(*engine, scene_, asked), ask(*make_local_engine(1), scene_, asked));
                 (void)worker_faults(*engine);
             }
         });

@@ -12,10 +12,7 @@ namespace octopair::test {
 namespace {
 
 Options options_of(const Asked& asked) {
-    Options options;
-    options.order = asked.order;
-    options.margin = asked.margin;
-    options.limit = asked.limit;
+    Options options{.order = asked.order, .margin = asked.margin, .limit = asked.limit};
     if (asked.windows) options.buffer_bytes = 0;
     return options;
 }
@@ -84,8 +81,8 @@ Objects Scene::objects(const Asked& asked) const {
 }
 
 Objects Scene::others(const Asked& asked) const {
-    if (asked.wide) return {std::span(wide_second), {}};
-    return {std::span(second), {}};
+    if (asked.wide) return {wide_second};
+    return {second};
 }
 
 Answer ask(Engine& engine, const Scene& scene, const Asked& asked, std::stop_token stop) {

@@ -19,9 +19,6 @@
 namespace octopair::test {
 namespace {
 
-using test::Asked;
-using test::Scene;
-
 /// Requests a stop after `most`, which must be longer than any call takes.
 class Deadline {
 public:
@@ -41,18 +38,18 @@ private:
     std::jthread thread_;
 };
 
-class Damaged : public test::Processes, public ::testing::WithParamInterface<int> {
+class Damaged : public Processes, public ::testing::WithParamInterface<int> {
 protected:
     void TearDown() override {
-        ::unsetenv(test::damage_variable);
+        ::unsetenv(damage_variable);
         Processes::TearDown();
     }
 
     void expect_an_end(Engine& engine, const Asked& asked) {
         SCOPED_TRACE(asked.describe());
-        const Deadline deadline(std::chrono::seconds(test::sanitized ? 60 : 15));
+        const Deadline deadline(std::chrono::seconds(sanitized ? 60 : 15));
         try {
-            (void)test::ask(engine, scene_, asked, deadline.token());
+            (void)ask(engine, scene_, asked, deadline.token());
         } catch (const Error& error) {
             EXPECT_GT(std::string(error.what()).size(), 10u);
         }
@@ -63,18 +60,18 @@ protected:
 };
 
 TEST_P(Damaged, TablesEndNoApplication) {
-    const std::uint64_t cases = test::scaled(20, 10);
+    const std::uint64_t cases = scaled(20, 10);
     const auto local = make_local_engine(1);
     for (std::uint64_t i = 0; i < cases && !HasFailure(); ++i) {
-        const std::uint64_t seed = test::test_seed(std::uint64_t(GetParam()) * 1000 + i);
+        const std::uint64_t seed = test_seed(std::uint64_t(GetParam()) * 1000 + i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        ::setenv(test::damage_variable, std::to_string(seed).c_str(), 1);
-        const auto engine = test::make_faulty_engine(3);
-        for (std::uint64_t call = 0; call < 4; ++call) expect_an_end(*engine, test::random_call(seed * 10 + call));
-        ::unsetenv(test::damage_variable);
-        for (const pid_t worker : test::children_of(::getpid())) (void)::kill(worker, SIGKILL);
-        const Asked asked = test::random_call(seed);
-        EXPECT_EQ(test::ask(*engine, scene_, asked), test::ask(*local, scene_, asked));
+        ::setenv(damage_variable, std::to_string(seed).c_str(), 1);
+        const auto engine = make_faulty_engine(3);
+        for (std::uint64_t call = 0; call < 4; ++call) expect_an_end(*engine, random_call(seed * 10 + call));
+        ::unsetenv(damage_variable);
+        for (const pid_t worker : children_of(::getpid())) (void)::kill(worker, SIGKILL);
+        const Asked asked = random_call(seed);
+        EXPECT_EQ(ask(*engine, scene_, asked), ask(*local, scene_, asked));
     }
 }
 

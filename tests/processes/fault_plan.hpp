@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "base/descriptor.hpp"
 #include "engine/processes/shared_memory/layout.hpp"

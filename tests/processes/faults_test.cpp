@@ -4,7 +4,6 @@
 // Replay: OCTOPAIR_TEST_SEED=<the seed that a failure printed>, with the same test.
 #include <gtest/gtest.h>
 
-#include <map>
 #include <numeric>
 
 #include "processes/asked.hpp"
@@ -17,15 +16,9 @@ namespace octopair::test {
 namespace {
 
 using samples::RandomStream;
-using test::Answer;
-using test::Asked;
-using test::Fault;
-using test::FaultKind;
-using test::How;
-using test::Moment;
 
 constexpr std::array fault_steps = {Step::encode, Step::count, Step::scan, Step::order};
-constexpr std::uint64_t faults_a_case = test::scaled(115, 8);
+constexpr std::uint64_t faults_a_case = scaled(115, 8);
 constexpr unsigned max_faults_per_call = 2;  // per call: a third fault in one share would end the call
 constexpr unsigned max_tries = 20;
 
@@ -43,12 +36,11 @@ struct FaultCase {
 void PrintTo(const FaultCase& a_case, std::ostream* out) { *out << a_case.name; }
 
 Fault random_fault(Step step, RandomStream& random) {
-    Fault fault;
-    fault.step = step;
-    fault.kind = FaultKind(random.below(3));
-    fault.moment = Moment(random.below(3));
-    fault.ticks = std::uint32_t(random.below(random.below(2) == 0 ? 2 : 30));
-    fault.pass_by = step == Step::scan || step == Step::order ? std::uint32_t(random.below(60)) : 0;
+    Fault fault{.step = step,
+                .kind = FaultKind(random.below(3)),
+                .moment = Moment(random.below(3)),
+                .ticks = std::uint32_t(random.below(random.below(2) == 0 ? 2 : 30)),
+                .pass_by = step == Step::scan || step == Step::order ? std::uint32_t(random.below(60)) : 0};
     return fault;
 }
 
@@ -62,22 +54,22 @@ std::vector<Fault> random_faults(bool ordered, RandomStream& random) {
     return faults;
 }
 
-class Faults : public test::Processes, public ::testing::WithParamInterface<FaultCase> {
+class Faults : public Processes, public ::testing::WithParamInterface<FaultCase> {
 protected:
     /// Makes a call repeatedly until all faults that were planned for it have been taken.
     void fail_within(Engine& engine, const Asked& asked, std::span<const Fault> faults) {
         const auto local = make_local_engine(2);
-        const Answer expected = test::ask(*local, scene_, asked);
+        const Answer expected = ask(*local, scene_, asked);
         plan_.set(faults);
         for (unsigned tries = 0; !plan_.empty() && tries < max_tries; ++tries) {
-            test::expect_same(test::ask(engine, scene_, asked), expected);
+            expect_same(ask(engine, scene_, asked), expected);
         }
         plan_.set({});
     }
 
     /// Expects that the engine counted exactly the faults that happened.
     void expect_accounted(const Engine& engine) {
-        const test::FaultCounts happened = plan_.happened();
+        const FaultCounts happened = plan_.happened();
         const WorkerFaults counted = worker_faults(engine);
         std::uint64_t ended = 0, stopped = 0;
         for (std::size_t step = 0; step < happened.size(); ++step) {
@@ -92,8 +84,8 @@ protected:
 
     /// Expects that every kind of fault happened in every step of the calls.
     void expect_all_kinds(bool ordered) {
-        if (test::sanitized) return;
-        const test::FaultCounts happened = plan_.happened();
+        if (sanitized) return;
+        const FaultCounts happened = plan_.happened();
         for (const Step step : fault_steps) {
             if (step == Step::order && !ordered) continue;
             for (const std::uint64_t count : happened[std::size_t(step)]) {
@@ -108,20 +100,20 @@ protected:
         return all;
     }
 
-    test::MappedPlan plan_;
-    test::Scene scene_{GetParam().scene, GetParam().objects, 1};
+    MappedPlan plan_;
+    Scene scene_{GetParam().scene, GetParam().objects, 1};
 };
 
 TEST_P(Faults, ChangeNoPair) {
-    const std::uint64_t seed = test::test_seed(1);
+    const std::uint64_t seed = test_seed(1);
     SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
     const FaultCase& a_case = GetParam();
     const bool ordered = a_case.order == Order::ascending && a_case.how != How::count;
-    const auto engine = test::make_faulty_engine(a_case.workers);
+    const auto engine = make_faulty_engine(a_case.workers);
     for (std::uint64_t call = 0; happened() < faults_a_case && !HasFailure(); ++call) {
         ASSERT_LT(call, 50 * faults_a_case) << "too few faults happen";
         RandomStream random(seed, call);
-        Asked asked = test::random_call(random.next());
+        Asked asked = random_call(random.next());
         asked.how = a_case.how;
         asked.order = a_case.order;
         asked.windows = a_case.windows;

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <string>
 
 #include "engine/processes/worker/worker.hpp"
 #include "processes/damage.hpp"

@@ -13,7 +13,7 @@
 namespace octopair::test {
 namespace {
 
-class WorkerFloatingPoint : public ::testing::TestWithParam<test::CallerState> {};
+class WorkerFloatingPoint : public ::testing::TestWithParam<CallerState> {};
 
 TEST_P(WorkerFloatingPoint, ChangesNoPairs) {
     for (const double step : {0.1, DBL_TRUE_MIN}) {
@@ -22,18 +22,17 @@ TEST_P(WorkerFloatingPoint, ChangesNoPairs) {
             const double x = step * double(i % 13), y = step * double(i / 13 % 11), z = step * double(i / 143);
             boxes.push_back({{x, y, z}, {x, y + step * double(i % 2), z}});
         }
-        const Objects objects{std::span<const Box3d>(boxes)};
-        Options options;
-        options.margin = step;
+        const Objects objects{boxes};
+        Options options{.margin = step};
         PairList expected, found;
         make_local_engine(1)->find_pairs(objects, expected, options);
-        test::call_in(GetParam(), [&] { make_process_engine(2)->find_pairs(objects, found, options); });
+        call_in(GetParam(), [&] { make_process_engine(2)->find_pairs(objects, found, options); });
         EXPECT_FALSE(expected.to_vector().empty());
         EXPECT_TRUE(same_sequence(found.to_vector(), expected.to_vector())) << step;
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(States, WorkerFloatingPoint, ::testing::ValuesIn(test::caller_states()),
+INSTANTIATE_TEST_SUITE_P(States, WorkerFloatingPoint, ::testing::ValuesIn(caller_states()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

@@ -21,26 +21,23 @@ struct Found {
 class WorkerHashes : public ::testing::TestWithParam<std::string> {
 protected:
     Found streamed(Engine& engine, Order order) const {
-        Options options;
-        options.order = order;
-        options.buffer_bytes = 64 << 20;
-        test::Hash hash;
+        Options options{.order = order, .buffer_bytes = 64 << 20};
+        Hash hash;
         const Summary summary = engine.stream_pairs(
             objects(), [&](std::span<const Pair> batch) { hash.add(batch); }, options);
         return {summary.pairs, hash.value()};
     }
     Found listed(Engine& engine, Order order) const {
-        Options options;
-        options.order = order;
+        Options options{.order = order};
         PairList list;
         (void)engine.find_pairs(objects(), list, options);
-        test::Hash hash;
+        Hash hash;
         for (const auto chunk : list.chunks()) hash.add(chunk);
         return {list.size(), hash.value()};
     }
-    Objects objects() const { return {std::span<const Box3f>(boxes_), {}}; }
+    Objects objects() const { return {boxes_, {}}; }
 
-    const test::Pinned& pinned_ = test::pinned_scene(GetParam());
+    const Pinned& pinned_ = pinned_scene(GetParam());
     const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
 };
 
@@ -55,7 +52,7 @@ TEST_P(WorkerHashes, AreThoseOfThreads) {
     const Found ascending{pinned_.pairs, pinned_.pair_hash};
     const bool many = pinned_.pairs > 1'000'000;
     for (const unsigned workers : {1u, 2u, 3u, 5u}) {
-        if (many && workers != 2 && (test::sanitized || workers != 5)) continue;
+        if (many && workers != 2 && (sanitized || workers != 5)) continue;
         SCOPED_TRACE(std::to_string(workers) + " workers");
         const auto engine = make_process_engine(workers);
         EXPECT_EQ(listed(*engine, Order::ascending), ascending);
@@ -66,7 +63,7 @@ TEST_P(WorkerHashes, AreThoseOfThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, WorkerHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, WorkerHashes, ::testing::ValuesIn(sample_kinds()), param_name);
 
 }  // namespace
 }  // namespace octopair::test

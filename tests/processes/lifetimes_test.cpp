@@ -22,17 +22,17 @@
 #include "processes/leftovers.hpp"
 #include "samples/random.hpp"
 #include "samples/scenes.hpp"
+#include "support/calls.hpp"
 #include "support/cases.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
 
-class WorkerLifetimes : public test::Processes {
+class WorkerLifetimes : public Processes {
 protected:
     static std::vector<Pair> expected(std::span<const Box3f> boxes) {
-        PairList list;
-        make_local_engine(1)->find_pairs({boxes}, list);
-        return list.to_vector();
+        return listed_pairs(*make_local_engine(1), {boxes});
     }
 };
 
@@ -42,7 +42,7 @@ TEST_F(WorkerLifetimes, ManySmallListsTakeNoDescriptors) {
     const auto pairs = expected(boxes);
     std::vector<PairList> lists;
     for (int i = 0; i < 300; ++i) engine->find_pairs({boxes}, lists.emplace_back());
-    EXPECT_LT(test::Belongings::now().descriptors, 40u);
+    EXPECT_LT(Belongings::now().descriptors, 40u);
     for (const PairList& list : lists) ASSERT_EQ(list.to_vector(), pairs);
 }
 
@@ -55,13 +55,13 @@ TEST_F(WorkerLifetimes, LargeListsStayAsTheyAre) {
         pairs.push_back(expected(boxes));
         engine->find_pairs({boxes}, lists[i]);
     }
-    EXPECT_LT(test::Belongings::now().descriptors, 40u);
+    EXPECT_LT(Belongings::now().descriptors, 40u);
     for (std::size_t i = 0; i < lists.size(); ++i) EXPECT_EQ(lists[i].to_vector(), pairs[i]) << i;
 }
 
 TEST_F(WorkerLifetimes, BoxesThatAreGoneAreForgotten) {
     const auto engine = make_process_engine(3);
-    const std::size_t before = test::Belongings::now().descriptors;
+    const std::size_t before = Belongings::now().descriptors;
     const auto boxes = samples::make_scene("uniform", 20'000, 1);
     const auto pairs = expected(boxes);
     PairList list;
@@ -71,7 +71,7 @@ TEST_F(WorkerLifetimes, BoxesThatAreGoneAreForgotten) {
         engine->find_pairs({std::span<const Box3f>(array.boxes())}, list);
         ASSERT_EQ(list.to_vector(), pairs);
     }
-    EXPECT_LE(test::Belongings::now().descriptors, before + 4) << "more is open than the arena and the pairs";
+    EXPECT_LE(Belongings::now().descriptors, before + 4) << "more is open than the arena and the pairs";
 }
 
 TEST_F(WorkerLifetimes, AForkedProcessLeavesTheWorkersAlone) {
@@ -119,12 +119,12 @@ TEST_F(WorkerLifetimes, InheritNoOpenFile) {
     const auto boxes = samples::make_scene("uniform", 20'000, 1);
     PairList list;
     engine->find_pairs({boxes}, list);
-    const std::vector<pid_t> workers = test::children_of(::getpid());
+    const std::vector<pid_t> workers = children_of(::getpid());
     ASSERT_EQ(workers.size(), 2u);
     for (const pid_t worker : workers) {
         std::size_t sockets = 0;
         for (const auto& [number, file] : open_files(worker)) {
-            EXPECT_EQ(file.find("of the application"), std::string::npos) << file;
+            EXPECT_FALSE(has_text(file, "of the application"));
             sockets += file.starts_with("socket:") && number > 2 ? 1 : 0;
         }
         EXPECT_EQ(sockets, 1u);
@@ -144,7 +144,7 @@ TEST_F(WorkerLifetimes, SharedFilesHaveNoNameAndCannotBeCut) {
         EXPECT_NE(::ftruncate(number, 0), 0) << file;
     }
     EXPECT_GE(shared, 2u);
-    EXPECT_TRUE(test::Belongings::now().named_memory.empty());
+    EXPECT_TRUE(Belongings::now().named_memory.empty());
 }
 
 /// Starts the test application (application.cpp), which starts workers.
@@ -160,14 +160,14 @@ pid_t start_application() {
 bool all_ended() {
     while (::waitpid(-1, nullptr, WNOHANG) > 0) {
     }
-    return test::children_of(::getpid()).empty();
+    return children_of(::getpid()).empty();
 }
 
 /// Returns the workers of an application that run their program, which may not be loaded yet. Before, for some microseconds, a child
 /// has not run a single instruction; Linux cannot arm the parent-death signal of a process that is stopped then.
 std::vector<pid_t> workers_of(pid_t application) {
     std::vector<pid_t> workers;
-    for (const test::ProcessStatus& one : test::all_processes()) {
+    for (const ProcessStatus& one : all_processes()) {
         if (one.parent == application && one.name == "octopair-worker") workers.push_back(one.id);
     }
     return workers;
@@ -176,9 +176,9 @@ std::vector<pid_t> workers_of(pid_t application) {
 /// Workers get signals at random moments of their first 50 ms, and then the application is killed.
 TEST_F(WorkerLifetimes, NoWorkerOutlivesItsClient) {
     ASSERT_EQ(::prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // workers without a parent become children of this process
-    samples::RandomStream random(test::test_seed(1), 1);
+    samples::RandomStream random(test_seed(1), 1);
     const auto pause = [&] { std::this_thread::sleep_for(std::chrono::microseconds(random.below(25'000))); };
-    const std::uint64_t most = test::case_count(60);
+    const std::uint64_t most = case_count(60);
     for (std::uint64_t i = 0; i < most; ++i) {
         const pid_t application = start_application();
         ASSERT_GT(application, 0);
@@ -188,13 +188,13 @@ TEST_F(WorkerLifetimes, NoWorkerOutlivesItsClient) {
         pause();
         for (const pid_t worker : workers_of(application)) (void)::kill(worker, SIGSTOP);
         (void)::kill(application, SIGKILL);
-        if (test::comes_true(all_ended, std::chrono::seconds(10))) continue;
-        for (const pid_t left : test::children_of(::getpid())) {
+        if (comes_true(all_ended, std::chrono::seconds(10))) continue;
+        for (const pid_t left : children_of(::getpid())) {
             ADD_FAILURE() << "process " << left << " is left of application " << i;
             (void)::kill(left, SIGKILL);
         }
     }
-    EXPECT_TRUE(test::comes_true(all_ended, std::chrono::seconds(10)));
+    EXPECT_TRUE(comes_true(all_ended, std::chrono::seconds(10)));
     (void)::prctl(PR_SET_CHILD_SUBREAPER, 0);
 }
 

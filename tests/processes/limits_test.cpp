@@ -10,16 +10,11 @@
 #include "processes/asked.hpp"
 #include "processes/leftovers.hpp"
 #include "support/at_allocation.hpp"
+#include "support/errors.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
-
-using test::Answer;
-using test::Asked;
-using test::expect_right;
-using test::How;
-using test::Scene;
 
 /// Lowers a limit of this process and its children until destruction.
 class Lowered {
@@ -38,14 +33,14 @@ private:
     rlimit before_{};
 };
 
-class WorkerLimits : public test::Processes {
+class WorkerLimits : public Processes {
 protected:
     enum class End { right, refused };
     /// Expects the right answer, or an Error with resource_limit or engine_failed. Returns which of the two happened.
     End right_or_refused(Engine& engine, const Scene& scene, const Asked& asked) {
-        const Answer expected = test::ask(*local_, scene, asked);
+        const Answer expected = ask(*local_, scene, asked);
         try {
-            EXPECT_EQ(test::ask(engine, scene, asked), expected);
+            EXPECT_EQ(ask(engine, scene, asked), expected);
             return End::right;
         } catch (const Error& error) {
             EXPECT_TRUE(error.code() == ErrorCode::resource_limit || error.code() == ErrorCode::engine_failed)
@@ -67,7 +62,7 @@ rlim_t used_descriptors() {
 }
 
 TEST_F(WorkerLimits, OfDescriptorsWhileItIsMade) {
-    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     unsigned made = 0, refused = 0;
     const rlim_t used = used_descriptors();
     for (rlim_t more = 0; more < 24; ++more) {
@@ -86,11 +81,11 @@ TEST_F(WorkerLimits, OfDescriptorsWhileItIsMade) {
 }
 
 TEST_F(WorkerLimits, OfDescriptorsLater) {
-    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     const auto engine = make_process_engine(3);
     expect_right(*engine, scene_, {});
     for (rlim_t more = 0; more < 12; ++more) {
-        for (const pid_t worker : test::children_of(::getpid())) (void)::kill(worker, SIGKILL);
+        for (const pid_t worker : children_of(::getpid())) (void)::kill(worker, SIGKILL);
         {
             const Lowered lowered(RLIMIT_NOFILE, used_descriptors() - rlim_t(6) + more);
             (void)right_or_refused(*engine, scene_, {.how = How::stream});
@@ -104,10 +99,10 @@ TEST_F(WorkerLimits, OfEachAllocation) {
     for (const How how : {How::list, How::stream}) {
         const auto engine = make_process_engine(2);
         const std::uint64_t failures =
-            test::fail_every_allocation([] { return 0; }, [&](int) { (void)test::ask(*engine, small, {.how = how}); },
-                                        [&](int, bool failed) {
-                                            if (failed) expect_right(*engine, small, {.how = how});
-                                        });
+            fail_every_allocation([] { return 0; }, [&](int) { (void)ask(*engine, small, {.how = how}); },
+                                  [&](int, bool failed) {
+                                      if (failed) expect_right(*engine, small, {.how = how});
+                                  });
         EXPECT_GT(failures, 5u);
     }
 }
@@ -130,12 +125,8 @@ TEST_F(WorkerLimits, OfFilesThatPairsDoNotFitInto) {
         const Lowered lowered(RLIMIT_FSIZE, bytes);
         for (const Order order : {Order::octal, Order::ascending}) {
             SCOPED_TRACE(std::to_string(bytes) + ", order " + std::to_string(int(order)));
-            try {
-                (void)test::ask(*engine, crowd_, {.how = How::list, .order = order});
-                ADD_FAILURE() << "the pairs fitted into the limit";
-            } catch (const Error& error) {
-                EXPECT_EQ(error.code(), ErrorCode::resource_limit) << error.what();
-            }
+            (void)error_of(ErrorCode::resource_limit,
+                           [&] { (void)ask(*engine, crowd_, {.how = How::list, .order = order}); });
             if (bytes >= rlim_t(16) << 20) expect_right(*engine, scene_, {.how = How::list, .order = order});
         }
         if (bytes >= rlim_t(16) << 20) expect_right(*engine, crowd_, {.how = How::count});
@@ -150,7 +141,7 @@ rlim_t mapped_bytes() {
 }
 
 TEST_F(WorkerLimits, OfAddressSpace) {
-    if (test::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    if (sanitized) GTEST_SKIP() << "sanitizers map terabytes";
     unsigned made = 0, refused = 0;
     for (const unsigned shift : {20u, 26u, 28u, 30u, 31u, 32u, 33u, 34u, 36u}) {
         const Lowered lowered(RLIMIT_AS, mapped_bytes() + (rlim_t(1) << shift));
@@ -188,7 +179,7 @@ FewProcesses call_with_few_processes(rlim_t most) {
 
 /// The worker program, too, starts a thread.
 TEST_F(WorkerLimits, OfProcesses) {
-    if (test::sanitized) GTEST_SKIP() << "sanitizers start threads of their own";
+    if (sanitized) GTEST_SKIP() << "sanitizers start threads of their own";
     for (rlim_t most = 1; most <= 8; ++most) {
         const pid_t child = ::fork();
         ASSERT_GE(child, 0);

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <mutex>
 #include <thread>
 
@@ -14,25 +13,19 @@
 #include "processes/leftovers.hpp"
 #include "samples/random.hpp"
 #include "support/compare.hpp"
+#include "support/errors.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
-using test::Asked;
-using test::expect_right;
-using test::Fault;
-using test::FaultKind;
-using test::How;
-using test::Moment;
-using test::Scene;
 
-class WorkerLosses : public test::Processes {};
+class WorkerLosses : public Processes {};
 
 /// Sends `signal` to at most `most` workers of this process, from number `choice` on. Returns whether workers exist.
 bool signal_workers(int signal, std::size_t most = 1000, std::uint64_t choice = 0) {
-    const auto workers = test::children_of(::getpid());
+    const auto workers = children_of(::getpid());
     for (std::size_t i = 0; i < std::min(most, workers.size()); ++i) {
         (void)::kill(workers[(i + choice) % workers.size()], signal);
     }
@@ -60,22 +53,16 @@ TEST_F(WorkerLosses, BetweenCallsAreMadeGood) {
 
 TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
     const Scene scene("clustered", 6'000, 1);  // few enough objects for one worker
-    test::MappedPlan plan;
-    const auto engine = test::make_faulty_engine(3);
+    MappedPlan plan;
+    const auto engine = make_faulty_engine(3);
     for (const Step step : {Step::encode, Step::count, Step::scan, Step::order}) {
         for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
             const Asked asked{.how = How::list, .order = Order::ascending};
             const Fault fault{
                 .step = step, .kind = kind, .moment = kind == FaultKind::kill ? Moment::begin : Moment::end};
             plan.set(std::vector<Fault>(3, fault));
-            try {
-                (void)test::ask(*engine, scene, asked);
-                ADD_FAILURE() << "no error after faults in step " << step_names[std::size_t(step)];
-            } catch (const Error& error) {
-                EXPECT_EQ(error.code(), ErrorCode::engine_failed) << error.what();
-                EXPECT_NE(std::string(error.what()).find(step_names[std::size_t(step)]), std::string::npos)
-                    << error.what();
-            }
+            expect_error(ErrorCode::engine_failed, step_names[std::size_t(step)],
+                         [&] { (void)ask(*engine, scene, asked); });
             expect_right(*engine, scene, asked);
             plan.set(std::vector<Fault>(2, fault));
             expect_right(*engine, scene, asked);
@@ -86,25 +73,20 @@ TEST_F(WorkerLosses, AtTheSameShareFailTheCallAlone) {
 
 TEST_F(WorkerLosses, FailuresWithoutAMessageAreDescribed) {
     const Scene scene("clustered", 6'000, 1);
-    test::MappedPlan plan;
-    const auto engine = test::make_faulty_engine(2);
+    MappedPlan plan;
+    const auto engine = make_faulty_engine(2);
     for (const Step step : {Step::encode, Step::count, Step::scan}) {
         plan.set(std::vector<Fault>{{.step = step, .kind = FaultKind::mute}});
-        try {
-            (void)test::ask(*engine, scene, {});
-            ADD_FAILURE() << "no error after faults in step " << step_names[std::size_t(step)];
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::engine_failed);
-            EXPECT_STREQ(error.what(), "a worker process failed without an error message");
-        }
+        EXPECT_EQ(error_of(ErrorCode::engine_failed, [&] { (void)ask(*engine, scene, {}); }),
+                  "a worker process failed without an error message");
         expect_right(*engine, scene, {});
     }
 }
 
 TEST_F(WorkerLosses, OfTheFirstBlockOfAStreamThatWasDelivered) {
     const Scene scene("world10", 6'000, 1);
-    test::MappedPlan plan;
-    const auto engine = test::make_faulty_engine(2);
+    MappedPlan plan;
+    const auto engine = make_faulty_engine(2);
     for (const Order order : {Order::octal, Order::ascending}) {
         for (std::uint32_t ticks = 0; ticks < 12; ++ticks) {
             const Fault fault{.step = Step::scan, .moment = Moment::tick, .ticks = ticks, .pass_by = ticks / 2};
@@ -144,7 +126,7 @@ private:
 class Disturbed : public WorkerLosses {
 protected:
     void call_while_disturbed(int signal, std::size_t at_once) {
-        const std::uint64_t seed = test::test_seed(1);
+        const std::uint64_t seed = test_seed(1);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const std::array scenes = {Scene("rods", 13'000, seed), Scene("crowd", 13'000, seed),
                                    Scene("speck", 40'000, seed)};
@@ -152,10 +134,10 @@ protected:
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(3);
         {
             const milliseconds pause(at_once == 1 ? 60 : 250);
-            Disturber disturber(signal, at_once, test::sanitized ? 5 * pause : pause, seed);
+            Disturber disturber(signal, at_once, sanitized ? 5 * pause : pause, seed);
             for (std::uint64_t i = 0; std::chrono::steady_clock::now() < end && !HasFailure(); ++i) {
                 const Scene& scene = scenes[i % scenes.size()];
-                Asked asked = test::random_call(seed + i);
+                Asked asked = random_call(seed + i);
                 if (scene.kind == "speck") {
                     // With any clearance all objects of the speck are pairs. A share would then last longer than a
                     // worker lives in this test.
@@ -179,10 +161,10 @@ TEST_F(Disturbed, ByTheEndOfAllWorkersAtOnce) { call_while_disturbed(SIGKILL, 3)
 TEST_F(WorkerLosses, OutliveTheEngineNowhere) {
     for (unsigned workers = 1; workers <= 6; ++workers) {
         auto engine = make_process_engine(workers);
-        EXPECT_EQ(test::children_of(::getpid()).size(), workers);
+        EXPECT_EQ(children_of(::getpid()).size(), workers);
         (void)signal_workers(workers % 2 == 0 ? SIGSTOP : SIGKILL, workers / 2);
         engine = nullptr;
-        EXPECT_TRUE(test::children_of(::getpid()).empty());
+        EXPECT_TRUE(children_of(::getpid()).empty());
     }
 }
 
@@ -190,8 +172,8 @@ TEST_F(WorkerLosses, LeaveAListThatOutlivesItsEngine) {
     const Scene scene("clustered", 16'000, 1);
     PairList list;
     (void)make_process_engine(2)->find_pairs(scene.objects({}), list);
-    std::vector<Pair> expected = test::ask(*make_local_engine(1), scene, {.order = Order::ascending}).pairs;
-    EXPECT_TRUE(test::same_bytes(list.to_vector(), expected));
+    std::vector<Pair> expected = ask(*make_local_engine(1), scene, {.order = Order::ascending}).pairs;
+    EXPECT_TRUE(same_bytes(list.to_vector(), expected));
     list = PairList();
 }
 

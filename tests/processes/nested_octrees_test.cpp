@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <memory>
 #include <vector>
 
 #include "octopair/processes.hpp"
 #include "processes/asked.hpp"
 #include "processes/fault_plan.hpp"
 #include "processes/leftovers.hpp"
-#include "support/any_call.hpp"
+#include "support/cases.hpp"
 #include "support/compare.hpp"
 #include "support/families.hpp"
 #include "support/scale.hpp"
@@ -18,28 +17,19 @@
 namespace octopair::test {
 namespace {
 
-using test::Answer;
-using test::Asked;
-using test::expect_right;
-using test::Fault;
-using test::FaultKind;
-using test::How;
-using test::Moment;
-using test::Scene;
-
 constexpr std::uint64_t objects = 60'000;
 constexpr std::uint64_t max_pairs = 2'000'000;
 constexpr unsigned worker_count = 2;
 constexpr std::uint32_t octree_blocks = 2 * worker_count;  // shares of encode of the outermost octree
 
-class NestedOctrees : public test::Processes {};
+class NestedOctrees : public Processes {};
 
 TEST_F(NestedOctrees, OfWorkersAreThoseOfThreads) {
     const Scene scene("speck", objects, 1);
     for (const unsigned count : {1u, 2u, 3u}) {
         SCOPED_TRACE(std::to_string(count) + " workers");
         const auto engine = make_process_engine(count);
-        for (const Asked& asked : test::all_ways()) expect_right(*engine, scene, asked);
+        for (const Asked& asked : all_ways()) expect_right(*engine, scene, asked);
         for (const Order order : {Order::octal, Order::ascending}) {
             expect_right(*engine, scene, {.order = order, .wide = true, .margin = 1e-10});
         }
@@ -60,16 +50,16 @@ TEST_F(NestedOctrees, OfJoinsAreThoseOfThreads) {
 
 TEST_F(NestedOctrees, OfClustersWithinClustersAreThoseOfThreads) {
     const auto local = make_local_engine(1), two = make_process_engine(2), three = make_process_engine(3);
-    const std::uint64_t first = test::test_seed(1);
-    for (std::uint64_t seed = first; seed < first + test::scaled(10, 5); ++seed) {
-        const test::Case a_case = test::make_family_case("nested", objects, seed);
+    const std::uint64_t first = test_seed(1);
+    for (std::uint64_t seed = first; seed < first + scaled(10, 5); ++seed) {
+        const Case a_case = make_family_case("nested", objects, seed);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        if (test::AnyCall{a_case, Order::octal, false, false}.counted_by(*local) > max_pairs) continue;
+        if (AnyCall{a_case, Order::octal, false, false}.counted_by(*local) > max_pairs) continue;
         for (const Order order : {Order::octal, Order::ascending}) {
-            const test::AnyCall call{a_case, order, false, false};
+            const AnyCall call{a_case, order, false, false};
             const auto expected = call.made_by(*local);
-            EXPECT_TRUE(test::same_bytes(call.made_by(*two), expected));
-            EXPECT_TRUE(test::same_bytes(call.made_by(*three), expected));
+            EXPECT_TRUE(same_bytes(call.made_by(*two), expected));
+            EXPECT_TRUE(same_bytes(call.made_by(*three), expected));
         }
     }
 }
@@ -90,15 +80,15 @@ std::vector<Fault> nested_faults() {
 
 TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
     const Scene scene("speck", objects, 3);
-    test::MappedPlan plan;
-    const auto local = make_local_engine(1), engine = test::make_faulty_engine(worker_count);
+    MappedPlan plan;
+    const auto local = make_local_engine(1), engine = make_faulty_engine(worker_count);
     constexpr std::array calls = {
         Asked{.how = How::list, .order = Order::octal}, Asked{.how = How::list, .order = Order::ascending},
         Asked{.how = How::stream, .order = Order::octal},
         Asked{.how = How::stream, .order = Order::ascending, .windows = true}, Asked{.how = How::count}};
     std::vector<Answer> expected;
     expected.reserve(calls.size());
-    for (const Asked& asked : calls) expected.push_back(test::ask(*local, scene, asked));
+    for (const Asked& asked : calls) expected.push_back(ask(*local, scene, asked));
     const std::vector<Fault> faults = nested_faults();
     for (std::size_t i = 0; i < faults.size(); ++i) {
         // Every second time, the next worker that begins a share of that step is also lost.
@@ -106,7 +96,7 @@ TEST_F(NestedOctrees, SurviveWorkersThatAreLostWhileTheyBuildThem) {
         if (planned.size() > 1) planned[1].pass_by = 0;
         plan.set(planned);
         SCOPED_TRACE("fault " + std::to_string(i) + ": " + calls[i % calls.size()].describe());
-        test::expect_same(test::ask(*engine, scene, calls[i % calls.size()]), expected[i % calls.size()]);
+        expect_same(ask(*engine, scene, calls[i % calls.size()]), expected[i % calls.size()]);
         EXPECT_TRUE(plan.empty()) << "too few shares of nested octrees";
     }
 }

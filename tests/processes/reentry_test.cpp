@@ -1,7 +1,6 @@
 // Tests callbacks that call the engine of worker processes, and the places of its errors.
 #include "support/reentry.hpp"
 #include "octopair/processes.hpp"
-#include "support/error_place.hpp"
 
 namespace octopair::test {
 namespace {

@@ -17,20 +17,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-using test::Asked;
-using test::Fault;
-using test::FaultKind;
-using test::How;
-using test::Scene;
 
-class WorkerTiming : public test::Processes {};
+class WorkerTiming : public Processes {};
 
 TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
     const Scene scene("clustered", 14'000, 1);
-    test::MappedPlan plan;
-    const auto engine = test::make_faulty_engine(3);
-    (void)test::ask(*engine, scene, {});
-    constexpr milliseconds patience(test::sanitized ? 10000 : 1000);
+    MappedPlan plan;
+    const auto engine = make_faulty_engine(3);
+    (void)ask(*engine, scene, {});
+    constexpr milliseconds patience(sanitized ? 10000 : 1000);
     for (const FaultKind kind : {FaultKind::kill, FaultKind::crash, FaultKind::stop}) {
         for (const Step step : {Step::encode, Step::scan}) {
             Clock::duration took{};
@@ -38,7 +33,7 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
                  ++attempt) {  // a machine that is busy with other work may delay any thread
                 plan.set(std::vector<Fault>{{.step = step, .kind = kind}});
                 const auto begin = Clock::now();
-                (void)test::ask(*engine, scene, {});
+                (void)ask(*engine, scene, {});
                 took = Clock::now() - begin;
                 EXPECT_TRUE(plan.empty());
                 if (took < patience) break;
@@ -48,7 +43,7 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
     }
 }
 
-constexpr milliseconds cancel_patience(test::sanitized ? 3000 : 200);
+constexpr milliseconds cancel_patience(sanitized ? 3000 : 200);
 
 /// Returns the time from a stop request to the end of the call, or nothing if the call ended before the request.
 std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked,
@@ -62,7 +57,7 @@ std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene
     });
     bool finished = false;
     try {
-        (void)test::ask(engine, scene, asked, source.get_token());
+        (void)ask(engine, scene, asked, source.get_token());
         finished = true;
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
@@ -91,15 +86,15 @@ protected:
 
 TEST_P(WorkerCancel, IsSoonDone) {
     const bool crowd = std::string(GetParam()) == "coincident";
-    const Scene scene(GetParam(), test::scaled(crowd ? 200'000 : 1'500'000, 10), 1), few("clustered", 5'000, 1);
+    const Scene scene(GetParam(), scaled(crowd ? 200'000 : 1'500'000, 10), 1), few("clustered", 5'000, 1);
     const auto engine = make_process_engine(3);
-    for (Asked asked : test::all_ways()) {
+    for (Asked asked : all_ways()) {
         if (crowd && asked.how == How::list) continue;
         for (const bool join : {false, true}) {
             asked.join = join;
             expect_cancelled(*engine, scene, asked);
         }
-        EXPECT_EQ(test::ask(*engine, few, asked), test::ask(*make_local_engine(1), few, asked));
+        EXPECT_EQ(ask(*engine, few, asked), ask(*make_local_engine(1), few, asked));
     }
     EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
 }
@@ -130,7 +125,7 @@ struct Application {
 
     std::size_t left() const {
         std::size_t living = 0;
-        for (const pid_t worker : workers) living += test::process_lives(worker) ? 1 : 0;
+        for (const pid_t worker : workers) living += process_lives(worker) ? 1 : 0;
         return living;
     }
 
@@ -142,7 +137,7 @@ class WorkersOfADeadClient : public WorkerTiming {
 protected:
     void expect_gone(const Application& application) {
         EXPECT_EQ(application.workers.size(), 3u);
-        EXPECT_TRUE(test::comes_true([&] { return application.left() == 0; }, milliseconds(10000)))
+        EXPECT_TRUE(comes_true([&] { return application.left() == 0; }, milliseconds(10000)))
             << application.left() << " workers are still running";
         for (const pid_t worker : application.workers) (void)::kill(worker, SIGKILL);
     }

@@ -10,6 +10,7 @@
 #include "baselines/baselines.hpp"
 #include "octopair/error.hpp"
 #include "samples/random.hpp"
+#include "support/errors.hpp"
 #include "support/hash.hpp"
 #include "support/kinds.hpp"
 #include "support/pinned.hpp"
@@ -24,14 +25,8 @@ std::vector<std::string> kind_names() {
 
 /// Returns the message of the usage error for `spec`.
 std::string refusal(const SceneSpec& spec) {
-    try {
-        generate_scene(spec, [](auto) { ADD_FAILURE() << "a batch of a refused scene"; });
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::usage);
-        return error.what();
-    }
-    ADD_FAILURE() << "not refused";
-    return {};
+    return test::error_of(ErrorCode::usage,
+                          [&] { generate_scene(spec, [](auto) { ADD_FAILURE() << "a batch of a refused scene"; }); });
 }
 
 class Scenes : public ::testing::TestWithParam<std::string> {};

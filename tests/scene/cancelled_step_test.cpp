@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "octopair/octopair.hpp"
+#include "support/calls.hpp"
+#include "support/errors.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
@@ -22,11 +24,9 @@ class CancelledSteps : public ::testing::TestWithParam<std::tuple<unsigned, doub
 protected:
     CancelledSteps() : boxes_(cancelled_scene_size), ids_(cancelled_scene_size) {
         for (Box3f& box : boxes_) box = cube_at(place(0, 100), place(0, 100), place(0, 100));
-        SceneOptions options;
-        options.threads = std::get<0>(GetParam());
-        options.slack = std::get<1>(GetParam());
+        SceneOptions options{.threads = std::get<0>(GetParam()), .slack = std::get<1>(GetParam())};
         scene_.emplace(options);
-        scene_->add({std::span<const Box3f>(boxes_)}, ids_);
+        scene_->add({boxes_}, ids_);
     }
 
     float place(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
@@ -39,14 +39,7 @@ protected:
     }
 
     void cancel_step() {
-        std::stop_source stop;
-        stop.request_stop();
-        try {
-            (void)scene_->step(stop.get_token());
-            FAIL() << "the step ignored the stop request";
-        } catch (const Error& error) {
-            ASSERT_EQ(error.code(), ErrorCode::cancelled) << error.what();
-        }
+        (void)error_of(ErrorCode::cancelled, [&] { (void)scene_->step(requested_stop()); });
     }
 
     void check_step() {

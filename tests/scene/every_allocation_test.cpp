@@ -56,7 +56,7 @@ protected:
     void append_add(std::size_t count, std::vector<double> padding, std::vector<Traits> traits) {
         calls_.emplace_back([boxes = some_boxes(count), padding, traits](Observed& observed) {
             std::vector<ObjectId> ids(boxes.size());
-            observed.scene->add({std::span<const Box3d>(boxes), padding}, ids, traits);
+            observed.scene->add({boxes, padding}, ids, traits);
             const AtAllocation::Paused paused;
             observed.ids.insert(observed.ids.end(), ids.begin(), ids.end());
         });

@@ -13,9 +13,6 @@
 namespace octopair::test {
 namespace {
 
-using test::call_in;
-using test::CallerState;
-
 class SceneFloatingPoint : public ::testing::TestWithParam<CallerState> {};
 
 /// Boxes on a grid of `step`.
@@ -110,7 +107,7 @@ TEST_P(SceneFloatingPoint, IsRestoredAfterAnError) {
     Scene scene({1, Precision::float64});
     const std::vector<Box3d> wrong = {{{2 * DBL_TRUE_MIN, 0, 0}, {DBL_TRUE_MIN, 1, 1}}};
     ObjectId id;
-    const auto add = [&] { call_in(GetParam(), [&] { scene.add(Objects{std::span(wrong)}, std::span(&id, 1)); }); };
+    const auto add = [&] { call_in(GetParam(), [&] { scene.add(Objects{wrong}, std::span(&id, 1)); }); };
     const auto overlaps = [&] { call_in(GetParam(), [&] { (void)scene.overlaps(wrong[0]); }); };
     const auto sphere = [&] { call_in(GetParam(), [&] { (void)scene.overlaps(Sphere{{0, 0, 0}, -DBL_TRUE_MIN}); }); };
     const auto make = [&] { call_in(GetParam(), [&] { Scene({1, Precision::float32, -DBL_TRUE_MIN}); }); };
@@ -120,7 +117,7 @@ TEST_P(SceneFloatingPoint, IsRestoredAfterAnError) {
     EXPECT_THROW(make(), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(States, SceneFloatingPoint, ::testing::ValuesIn(test::caller_states()),
+INSTANTIATE_TEST_SUITE_P(States, SceneFloatingPoint, ::testing::ValuesIn(caller_states()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace

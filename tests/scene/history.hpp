@@ -10,11 +10,11 @@
 #include <random>
 #include <stop_token>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "scene/model.hpp"
 #include "scene/query_model.hpp"
+#include "support/errors.hpp"
 #include "support/families.hpp"
 #include "support/kinds.hpp"
 
@@ -141,14 +141,7 @@ private:
 
     /// Cancels a step at its begin. Later calls of the scene must not show a difference.
     void cancel_step() {
-        std::stop_source stop;
-        stop.request_stop();
-        try {
-            (void)scene_.step(stop.get_token());
-            FAIL() << "a step ignored a stop request";
-        } catch (const Error& error) {
-            ASSERT_EQ(error.code(), ErrorCode::cancelled) << error.what();
-        }
+        (void)error_of(ErrorCode::cancelled, [&] { (void)scene_.step(requested_stop()); });
         check_queries();
     }
 

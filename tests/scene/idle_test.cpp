@@ -14,7 +14,7 @@ namespace {
 /// A scene with all objects of a sample.
 class IdleScene : public ::testing::Test {
 protected:
-    IdleScene() { scene_.add(Objects{std::span<const Box3f>(boxes_)}, ids_); }
+    IdleScene() { scene_.add(Objects{boxes_}, ids_); }
 
     void move_all(float way) {
         for (Box3f& box : boxes_) {

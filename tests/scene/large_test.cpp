@@ -41,14 +41,14 @@ public:
 class LargeScene : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
-    constexpr std::uint64_t objects = test::scaled(3000, 2);
-    std::vector<Box3f> boxes = test::make_boxes(GetParam(), objects, 31);
-    const std::vector<Box3f> places = test::make_boxes(GetParam(), objects, 32);
+    constexpr std::uint64_t objects = scaled(3000, 2);
+    std::vector<Box3f> boxes = make_boxes(GetParam(), objects, 31);
+    const std::vector<Box3f> places = make_boxes(GetParam(), objects, 32);
     std::vector<Scene> scenes;
     std::vector<ObjectId> ids(boxes.size());
     for (const unsigned threads : {1u, 2u, 3u}) {
         scenes.emplace_back(SceneOptions{threads});
-        scenes.back().add(Objects{std::span<const Box3f>(boxes)}, ids);
+        scenes.back().add(Objects{boxes}, ids);
     }
     std::mt19937 random(33);
     for (int step = 0; step < 7; ++step) {
@@ -81,14 +81,14 @@ TEST_P(LargeScene, EveryStepIsWhatAFullDetectionFinds) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, LargeScene, ::testing::ValuesIn(all_kind_names()), param_name);
 
 /// Tests the first object that is stored far above the leaves, in a step in which a small object moves.
 TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
-    std::vector<Box3f> boxes = test::make_boxes("uniform", 4000, 34);
+    std::vector<Box3f> boxes = make_boxes("uniform", 4000, 34);
     std::vector<ObjectId> ids(boxes.size());
     Scene scene({1});
-    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     scene.step();
     const Box3f giant{{0, 0, 0}, {1, 1, 1}};
     boxes.push_back(giant);
@@ -106,10 +106,10 @@ TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
 /// Tests many objects that move out of the octree, where no octants divide them. The step costs more than estimated,
 /// and its result stays right.
 TEST(LargeScene, ManyThatLeaveTheOctreeAreFound) {
-    std::vector<Box3f> boxes = test::make_boxes("uniform", test::scaled(30000, 4), 35);
+    std::vector<Box3f> boxes = make_boxes("uniform", scaled(30000, 4), 35);
     std::vector<ObjectId> ids(boxes.size());
     Scene scene({1});
-    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     scene.step();
     const std::size_t leaving = boxes.size() / 10;
     for (std::size_t i = 0; i < leaving; ++i) {

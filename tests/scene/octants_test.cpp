@@ -5,6 +5,8 @@
 #include <random>
 
 #include "octopair/octopair.hpp"
+#include "support/calls.hpp"
+#include "support/errors.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
@@ -67,7 +69,7 @@ struct Expected {
             indices.push_back(index);
         }
         const bool padded = std::ranges::any_of(padding, [](double each) { return each > 0; });
-        const Objects objects{std::span<const Box<Real>>(boxes), padded ? padding : std::span<const double>()};
+        const Objects objects{boxes, padded ? padding : std::span<const double>()};
         const Octants alone = list_octants(objects, {margin}), all = scene.octants();
         ASSERT_EQ(all.all().size(), alone.all().size());
         std::vector<std::uint32_t> homes(slots.size(), Octants::no_octant);
@@ -165,7 +167,7 @@ TEST(SceneOctants, ChangeNoStep) {
     Scene scene, twin;
     for (Scene* each : {&scene, &twin}) {
         std::vector<ObjectId> ids(boxes.size());
-        each->add({std::span<const Box3f>(boxes)}, ids);
+        each->add({boxes}, ids);
         each->step();
         each->move(std::span(ids).first(1), std::span<const Box3f>(boxes).last(1));
         if (each == &scene) {
@@ -180,14 +182,7 @@ TEST(SceneOctants, AreCancelled) {
     Scene scene;
     std::vector<ObjectId> ids(1);
     scene.add({std::span<const Box3f>(make_boxes("uniform", 1, 6))}, ids);
-    std::stop_source stop;
-    stop.request_stop();
-    try {
-        scene.octants(stop.get_token());
-        ADD_FAILURE() << "not cancelled";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    }
+    (void)error_of(ErrorCode::cancelled, [&] { scene.octants(requested_stop()); });
     EXPECT_EQ(scene.octants().all()[0].entries, 1u);
 }
 

@@ -14,7 +14,7 @@
 namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t histories_per_kind = test::scaled(30, 2);
+constexpr std::uint64_t histories_per_kind = scaled(30, 2);
 
 class SceneProperty : public ::testing::TestWithParam<std::string> {
 protected:
@@ -24,7 +24,7 @@ protected:
             options.recording = recording;
             return FailingScene(options, seed, failing);
         };
-        test::History<FailingScene> history(GetParam(), seed, make);
+        History<FailingScene> history(GetParam(), seed, make);
         history.run();
         full_ += history.model().full();
         partial_ += history.model().partial();
@@ -37,9 +37,9 @@ protected:
 
 TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
     const TemporaryDirectory directory;
-    const std::uint64_t count = test::case_count(histories_per_kind);
+    const std::uint64_t count = case_count(histories_per_kind);
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t seed = test::case_seed(GetParam(), i);
+        const std::uint64_t seed = case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const std::string recording = seed % 6 < 2 ? directory.file("r.rec") : "";
         run(seed, seed % 2 == 0 ? 0.3 : 0, recording);
@@ -55,7 +55,7 @@ TEST_P(SceneProperty, EveryStepIsWhatBruteForceFinds) {
     failures_.expect_each();
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SceneProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, SceneProperty, ::testing::ValuesIn(all_kind_names()), param_name);
 
 }  // namespace
 }  // namespace octopair::test

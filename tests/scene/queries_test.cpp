@@ -8,24 +8,23 @@
 
 #include "octopair/octopair.hpp"
 #include "scene/query_model.hpp"
+#include "support/errors.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
-using test::Model;
-
 class SceneQueriesTest : public ::testing::TestWithParam<std::string> {};
 
 /// A scene of one kind and its model.
 struct Pool {
     Pool(const std::string& kind, std::uint64_t objects, unsigned threads) : scene({threads}) {
-        const std::vector<Box3f> boxes = test::make_boxes(kind, objects, 21);
+        const std::vector<Box3f> boxes = make_boxes(kind, objects, 21);
         std::vector<ObjectId> ids(boxes.size());
-        scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+        scene.add(Objects{boxes}, ids);
         scene.step();
-        const std::vector<Box3d> wide = test::widened(boxes);
+        const std::vector<Box3d> wide = widened(boxes);
         for (std::size_t i = 0; i < ids.size(); ++i) model.objects[ids[i].index] = {ids[i], wide[i], 0, {}};
     }
 
@@ -34,9 +33,9 @@ struct Pool {
 };
 
 TEST_P(SceneQueriesTest, OfALargeSceneAreWhatBruteForceFinds) {
-    Pool pool(GetParam(), test::scaled(3000, 1000), 1);
-    for (std::uint64_t seed = 0; seed < test::scaled(10, 3); ++seed) {
-        test::QueryModel(pool.model, pool.scene, seed).check();
+    Pool pool(GetParam(), scaled(3000, 1000), 1);
+    for (std::uint64_t seed = 0; seed < scaled(10, 3); ++seed) {
+        QueryModel(pool.model, pool.scene, seed).check();
         if (HasFatalFailure()) return;
     }
 }
@@ -44,7 +43,7 @@ TEST_P(SceneQueriesTest, OfALargeSceneAreWhatBruteForceFinds) {
 TEST_P(SceneQueriesTest, ManyAtOnceAreAnsweredLikeOneByOne) {
     constexpr std::size_t queries = 200;
     Pool one(GetParam(), 800, 1), three(GetParam(), 800, 3);
-    const std::vector<Box3d> boxes = test::widened(test::make_boxes(GetParam(), queries, 22));
+    const std::vector<Box3d> boxes = widened(make_boxes(GetParam(), queries, 22));
     std::vector<Ray> rays;
     std::vector<Sphere> spheres;
     for (const Box3d& box : boxes) {
@@ -77,7 +76,7 @@ TEST_P(SceneQueriesTest, ManyAtOnceAreAnsweredLikeOneByOne) {
             });
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, SceneQueriesTest, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, SceneQueriesTest, ::testing::ValuesIn(all_kind_names()), param_name);
 
 TEST(SceneQueries, OfAnEmptySceneFindNothing) {
     Scene scene;
@@ -92,7 +91,7 @@ TEST(SceneQueries, ARayThatOnlyTouchesHits) {
     Scene scene({1, Precision::float64});
     const std::vector<Box3d> boxes = {{{3, 1, 1}, {4, 2, 2}}, {{6, 2, 2}, {6, 2, 2}}, {{9, 3, 0}, {10, 3, 9}}};
     std::vector<ObjectId> ids(boxes.size());
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     // The ray runs along an edge of box 0, and through box 1, which is a point.
     EXPECT_EQ(scene.all_hits({{0, 2, 2}, {1, 0, 0}}), (std::vector<RayHit>{{0, 3}, {1, 6}}));
     // The ray enters box 0 at a corner, passes through box 1, and hits the border of box 2, which is flat.
@@ -115,7 +114,7 @@ std::vector<Box3d> points_of_a_sphere(int exponent, double moved) {
                 if (x * x + y * y + z * z != 27 * 27) continue;
                 double at[3] = {double(x), double(y), double(z)};
                 for (double& coordinate : at) coordinate = std::ldexp(coordinate + moved, exponent);
-                points.push_back(test::point_box(at));
+                points.push_back(point_box(at));
             }
         }
     }
@@ -129,7 +128,7 @@ TEST(SceneQueries, ASphereAndTheNearestFindExactlyEqualDistances) {
             std::shuffle(points.begin(), points.end(), std::mt19937_64(7));
             Scene scene({1, Precision::float64});
             std::vector<ObjectId> ids(points.size());
-            scene.add(Objects{std::span<const Box3d>(points)}, ids);
+            scene.add(Objects{points}, ids);
             scene.step();
             const double centre = std::ldexp(moved, exponent), radius = std::ldexp(27, exponent);
             EXPECT_EQ(scene.overlaps(Sphere{{centre, centre, centre}, radius}).size(), points.size()) << exponent;
@@ -148,7 +147,7 @@ TEST(SceneQueries, TheNearestOfEqualRoundedDistancesComesFirst) {
     const std::vector<Box3d> boxes = {{{1, 0x1p-40, 0}, {1, 0x1p-40, 0}}, {{0, 1, 0}, {0, 1, 0}}};
     Scene scene({1, Precision::float64});
     std::vector<ObjectId> ids(boxes.size());
-    scene.add(Objects{std::span<const Box3d>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     scene.step();
     const Box3d place{{0, 0, 0}, {0, 0, 0}};
     EXPECT_EQ(scene.nearest(place, 1), (std::vector<Neighbor>{{1, 1}}));
@@ -159,7 +158,7 @@ TEST(SceneQueries, NearestObjectsAreWithinTheLimit) {
     const std::vector<Box3d> boxes = {{{1, 0, 0}, {2, 0, 0}}, {{-3, 0, 0}, {-3, 0, 0}}, {{0, 0, 0}, {0, 0, 0}}};
     Scene scene({1, Precision::float64});
     std::vector<ObjectId> ids(boxes.size());
-    scene.add(Objects{std::span<const Box3d>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     const Box3d place{{0, 0, 0}, {0, 0, 0}};
     const auto nearest = [&](std::size_t count, double within) {
         Answers<Neighbor> answers;
@@ -181,15 +180,7 @@ TEST(SceneQueries, NearestObjectsAreWithinTheLimit) {
 TEST(SceneQueries, BadOnesAreRefused) {
     constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
     Scene scene;
-    const auto refused = [](auto&& ask) {
-        try {
-            ask();
-            return std::string("accepted");
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::bad_input);
-            return std::string(error.what());
-        }
-    };
+    const auto refused = [](auto&& ask) { return error_of(ErrorCode::bad_input, ask); };
     const std::string what = "query 0 of the call is not valid";
     EXPECT_EQ(refused([&] { (void)scene.overlaps(Box3d{{1, 0, 0}, {0, 1, 1}}); }), what);
     EXPECT_EQ(refused([&] { (void)scene.overlaps(Box3d{{0, 0, 0}, {infinity, 1, 1}}); }), what);

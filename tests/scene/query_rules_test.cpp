@@ -16,10 +16,6 @@
 namespace octopair::test {
 namespace {
 
-using test::exact_squared_distance;
-using test::exactly_touches;
-using test::rounded_distance;
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Point = std::array<double, 3>;
@@ -41,7 +37,7 @@ std::vector<Point> integer_points(int squared_radius) {
 Box3d scaled_box(const Point& point, const Point& centre, int exponent) {
     double at[3];
     for (unsigned axis = 0; axis < 3; ++axis) at[axis] = std::ldexp(point[axis] + centre[axis], exponent);
-    return test::point_box(at);
+    return point_box(at);
 }
 
 TEST(QueryRules, SpheresTouchEveryIntegerPointOnThem) {
@@ -55,7 +51,7 @@ TEST(QueryRules, SpheresTouchEveryIntegerPointOnThem) {
                     const Box3d box = scaled_box(point, centre, exponent);
                     ASSERT_TRUE(overlap(sphere, box))
                         << point[0] << " " << point[1] << " " << point[2] << " of " << radius << " * 2^" << exponent;
-                    ASSERT_EQ(distance(box, test::point_box(sphere.centre)), sphere.radius);
+                    ASSERT_EQ(distance(box, point_box(sphere.centre)), sphere.radius);
                     const Sphere smaller{{sphere.centre[0], sphere.centre[1], sphere.centre[2]},
                                          std::nextafter(sphere.radius, 0)};
                     ASSERT_FALSE(overlap(smaller, box));
@@ -116,12 +112,12 @@ private:
 TEST(QueryRules, SpheresAgreeWithIntegers) {
     std::mt19937_64 random(1);
     std::uint64_t touching = 0;
-    const std::uint64_t cases = test::scaled(40000, 4000);
+    const std::uint64_t cases = scaled(40000, 4000);
     for (std::uint64_t i = 0; i < cases; ++i) {
         Numbers numbers(random);
         const Box3d box = numbers.box();
         Sphere sphere{{numbers.draw(), numbers.draw(), numbers.draw()}, std::abs(numbers.draw())};
-        if (random() % 4 != 0) sphere.radius = rounded_distance(test::point_box(sphere.centre), box);
+        if (random() % 4 != 0) sphere.radius = rounded_distance(point_box(sphere.centre), box);
         if (sphere.radius == infinity) sphere.radius = DBL_MAX;
         if (random() % 4 == 0) sphere.radius = std::nextafter(sphere.radius, random() % 2 == 0 ? 0 : DBL_MAX);
         const bool expected = exactly_touches(sphere, box);
@@ -134,7 +130,7 @@ TEST(QueryRules, SpheresAgreeWithIntegers) {
 
 TEST(QueryRules, DistancesAreTheExactOnesRounded) {
     std::mt19937_64 random(2);
-    const std::uint64_t cases = test::scaled(20000, 2000);
+    const std::uint64_t cases = scaled(20000, 2000);
     for (std::uint64_t i = 0; i < cases; ++i) {
         Numbers numbers(random);
         const Box3d a = numbers.box(), b = numbers.box();
@@ -149,7 +145,7 @@ TEST(QueryRules, DistancesAreTheExactOnesRounded) {
 TEST(QueryRules, DistancesCompareAsIntegersDo) {
     std::mt19937_64 random(3);
     std::uint64_t equal = 0;
-    const std::uint64_t cases = test::scaled(40000, 4000);
+    const std::uint64_t cases = scaled(40000, 4000);
     for (std::uint64_t i = 0; i < cases; ++i) {
         Numbers numbers(random);
         const Box3d place = numbers.box(), a = numbers.box();
@@ -160,7 +156,7 @@ TEST(QueryRules, DistancesCompareAsIntegersDo) {
             std::swap(b.max[2], b.max[i % 3]);
             if (i % 8 == 0) b.max[0] = std::min(std::nextafter(b.max[0], DBL_MAX), DBL_MAX);
         }
-        const test::Integer to_a = exact_squared_distance(place, a), to_b = exact_squared_distance(place, b);
+        const Integer to_a = exact_squared_distance(place, a), to_b = exact_squared_distance(place, b);
         const int expected = int(to_a > to_b) - int(to_a < to_b);
         equal += expected == 0 ? 1 : 0;
         ASSERT_EQ(compare_distances(place, a, b), expected) << i;

@@ -17,10 +17,6 @@
 namespace octopair::test {
 namespace {
 
-using test::error_of;
-using test::read_file;
-using test::TemporaryDirectory;
-
 ReplayReport replay_bytes(const std::string& bytes, const ReplayOptions& options = {1, true}) {
     RecordingReader reader(source_of(bytes));
     return replay(reader, options);
@@ -160,10 +156,10 @@ std::string head_of(RecordingHead head) {
     return bytes;
 }
 
-std::string numbers(std::initializer_list<std::uint32_t> values) { return test::bytes_of(std::vector(values)); }
+std::string numbers(std::initializer_list<std::uint32_t> values) { return bytes_of(std::vector(values)); }
 
 TEST_F(Recording, FindsTheSameAgainOnAnyNumberOfThreads) {
-    for (std::uint64_t seed = 0; seed < test::scaled(12, 3); ++seed) {
+    for (std::uint64_t seed = 0; seed < scaled(12, 3); ++seed) {
         const Precision precision = seed % 2 == 0 ? Precision::float32 : Precision::float64;
         const double margin = seed % 3 == 0 ? 0.25 : 0;
         std::vector<RecordedResult> then;
@@ -217,9 +213,8 @@ TEST_F(Recording, ADifferenceIsFound) {
         << message;
     RecordedResult counted = result;
     counted.began += 5;
-    EXPECT_NE(error_of(ErrorCode::engine_failed, [&] { (void)replay_bytes(with(counted)); })
-                  .find("; recorded: " + std::to_string(counted.began) + " began"),
-              std::string::npos);
+    expect_error(ErrorCode::engine_failed, "; recorded: " + std::to_string(counted.began) + " began",
+                 [&] { (void)replay_bytes(with(counted)); });
     EXPECT_EQ(replay_bytes(with(counted), {1, false}).steps, 3u);  // results are not checked
 }
 
@@ -231,8 +226,7 @@ TEST_F(Recording, WhereverItIsCutTheCallsBeforeAreMade) {
         SCOPED_TRACE(size);
         const std::string cut = bytes.substr(0, size);
         if (size < sizeof(RecordingHead)) {
-            EXPECT_NE(error_of(ErrorCode::bad_input, [&] { (void)replay_bytes(cut); }).find("r.rec: byte "),
-                      std::string::npos);
+            expect_error(ErrorCode::bad_input, "r.rec: byte ", [&] { (void)replay_bytes(cut); });
             continue;
         }
         const ReplayReport report = replay_bytes(cut);
@@ -260,8 +254,7 @@ TEST_F(Recording, NoDamageGoesUnnoticed) {
 
 TEST_F(Recording, WhatIsNoRecordingIsRefused) {
     const auto refused = [](const std::string& bytes, const std::string& words) {
-        const std::string message = error_of(ErrorCode::bad_input, [&] { (void)replay_bytes(bytes); });
-        EXPECT_NE(message.find(words), std::string::npos) << message;
+        expect_error(ErrorCode::bad_input, words, [&] { (void)replay_bytes(bytes); });
     };
     RecordingHead head;
     refused("", "byte 0: the file ends before the recording begins");
@@ -285,16 +278,16 @@ TEST_F(Recording, RecordsThatNobodyWroteAreRefused) {
         const std::string message =
             error_of(ErrorCode::bad_input, [&] { (void)replay_bytes(head + add + record(kind, payload)); });
         EXPECT_TRUE(message.starts_with("r.rec: byte " + std::to_string(head.size() + add.size()) + ": ")) << message;
-        EXPECT_NE(message.find(words), std::string::npos) << message;
+        EXPECT_TRUE(has_text(message, words));
     };
     const auto add = std::uint32_t(RecordKind::add), move = std::uint32_t(RecordKind::move);
-    const std::string unit_bytes = test::bytes_of(std::vector<float>{0, 0, 0, 1, 1, 1});
+    const std::string unit_bytes = bytes_of(std::vector<float>{0, 0, 0, 1, 1, 1});
     refused(0, "", "unknown kind of record: 0");
     refused(8, "", "unknown kind of record: 8");
     refused(move, "", "the record is too short");
     refused(add, numbers({1, 0, 0}), "the length of the record does not match its counts: 0 bytes instead of 24");
     refused(add, numbers({0xffffffff, 0xffffffff, 0xffffffff}), "the length of the record does not match its counts");
-    refused(add, numbers({1, 0, 0}) + test::bytes_of(std::vector<float>{0, 0, 0, -1, 1, 1}), "object 0 of the call");
+    refused(add, numbers({1, 0, 0}) + bytes_of(std::vector<float>{0, 0, 0, -1, 1, 1}), "object 0 of the call");
     refused(add, numbers({1, 2, 0}) + unit_bytes + std::string(16, '\0'), "2 paddings for 1 objects");
     refused(add, numbers({1, 0, 1}) + unit_bytes + numbers({1, 1, 2}), "the trait `fixed` is 2, not 0 or 1");
     refused(move, numbers({1, 5, 1}) + unit_bytes, "id 5.1 names no object");
@@ -310,10 +303,10 @@ TEST_F(Recording, ACallThatFailsIsNotInIt) {
     const std::vector<Box3f> boxes = {unit_box, unit_box}, wrong = {{{0, 0, 0}, {-1, 1, 1}}, unit_box};
     Scene scene(options());
     std::vector<ObjectId> ids(2);
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     (void)scene.step();
     const std::size_t before = content().size();
-    EXPECT_THROW(scene.add(Objects{std::span(wrong)}, ids), Error);
+    EXPECT_THROW(scene.add(Objects{wrong}, ids), Error);
     EXPECT_THROW(scene.move(ids, std::span(wrong)), Error);
     EXPECT_THROW(scene.sweep(ids, std::span(wrong)), Error);
     EXPECT_THROW(scene.remove(std::vector{ids[0], ids[0]}), Error);
@@ -335,7 +328,7 @@ TEST_F(Recording, IsThereBeforeAndAfterEachStep) {
     Scene scene(options());
     EXPECT_EQ(content().size(), sizeof(RecordingHead));
     std::vector<ObjectId> ids(2);
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     (void)scene.step();
     EXPECT_EQ(replay_bytes(content()).steps, 1u);
     // The file after a crash in the step: the result is missing, and the replay repeats the step.
@@ -351,7 +344,7 @@ TEST_F(Recording, AScenesLastCallsAreInIt) {
         Scene scene(options());
         std::vector<ObjectId> ids(1);
         const std::vector<Box3f> boxes = {unit_box};
-        scene.add(Objects{std::span(boxes)}, ids);
+        scene.add(Objects{boxes}, ids);
         Scene other = std::move(scene);
         other.remove(ids);
     }
@@ -359,7 +352,7 @@ TEST_F(Recording, AScenesLastCallsAreInIt) {
 }
 
 TEST_F(Recording, ReplacesWhatWasThere) {
-    test::write_file(path(), std::string(10'000, 'x'));
+    write_file(path(), std::string(10'000, 'x'));
     EXPECT_THROW(Scene({1, Precision::float32, -1, path()}), Error);
     EXPECT_EQ(content().size(), 10'000u);  // a refused scene does not replace the file
     { Scene scene(options()); }
@@ -402,13 +395,13 @@ TEST_F(Recording, AFullDiskChangesNothing) {
     const std::string full = path() + ": cannot write: File too large";
     Scene scene(options());
     std::vector<ObjectId> ids(2);
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     (void)scene.step();
     const std::vector<Box3f> apart = {unit_box, {{5, 5, 5}, {6, 6, 6}}};
     {
         const FullDisk disk(content().size() + 10);
         std::vector<ObjectId> more(many.size(), ids[0]);
-        EXPECT_EQ(error_of(ErrorCode::io_failed, [&] { scene.add(Objects{std::span(many)}, more); }), full);
+        EXPECT_EQ(error_of(ErrorCode::io_failed, [&] { scene.add(Objects{many}, more); }), full);
         EXPECT_EQ(more.back(), ids[0]);
         EXPECT_EQ(scene.size(), 2u);
         scene.move(ids, std::span(apart));  // still fits into the recorder's buffer
@@ -429,7 +422,7 @@ TEST_F(Recording, AStepThatWasMadeStandsThoughItsResultIsWrittenLater) {
     const std::vector<Box3f> boxes = {unit_box, unit_box};
     Scene scene(options());
     std::vector<ObjectId> ids(2);
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     {
         // Room for the addition and the beginning of the step, but not for its result.
         const FullDisk disk(sizeof(RecordingHead) + (record_overhead + 12 + 48) + record_overhead + 10);
@@ -452,7 +445,7 @@ TEST_F(Recording, IsByteForByteWhatTheDocumentationShows) {
         Scene scene(options());
         std::vector<ObjectId> ids(2);
         const std::vector<Box3f> boxes = {unit_box, {{1, 0, 0}, {2, 1, 1}}};
-        scene.add(Objects{std::span(boxes)}, ids);
+        scene.add(Objects{boxes}, ids);
         (void)scene.step();
     }
     std::string hexadecimal;

@@ -1,7 +1,6 @@
 // Tests scenes with slack: enlarged boxes save searches, and do not change the pairs.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <random>
 #include <stdexcept>
 
@@ -13,9 +12,7 @@ namespace octopair::test {
 namespace {
 
 SceneOptions with_slack(double slack) {
-    SceneOptions options;
-    options.threads = 2;
-    options.slack = slack;
+    SceneOptions options{.threads = 2, .slack = slack};
     return options;
 }
 
@@ -54,7 +51,7 @@ TEST(Slack, PairsOfEnlargedBoxesStayWhileObjectsStayWithinThem) {
 }
 
 TEST(Slack, DriftingObjectsHaveThePairsOfAFullDetection) {
-    const std::uint64_t objects = test::scaled(30'000, 10);
+    const std::uint64_t objects = scaled(30'000, 10);
     std::vector<Box3f> boxes = samples::make_scene("uniform", objects, 1);
     const float width = boxes[0].max[0] - boxes[0].min[0];
     Scene scene(with_slack(width / 4));
@@ -81,7 +78,7 @@ TEST(Slack, DriftingObjectsHaveThePairsOfAFullDetection) {
 TEST(Slack, AStepThatHasNoRoomCanBeRepeated) {
     std::uint64_t left = 0;
     int failures = 0;
-    for (std::uint64_t budget = 0; budget < 20'000'000; budget += test::sanitized ? 4'000'000 : 500'000) {
+    for (std::uint64_t budget = 0; budget < 20'000'000; budget += sanitized ? 4'000'000 : 500'000) {
         SceneOptions options = with_slack(0.5);
         options.room_for_pairs = [&](std::uint64_t bytes) {
             if (bytes > left) throw std::runtime_error("no room");
@@ -106,7 +103,7 @@ TEST(Slack, AStepThatHasNoRoomCanBeRepeated) {
         EXPECT_EQ(step.began.size(), 1010u * 1009 / 2 - 45);
         EXPECT_EQ(scene.pairs().size(), 1010u * 1009 / 2);
     }
-    EXPECT_GT(failures, test::sanitized ? 1 : 3);
+    EXPECT_GT(failures, sanitized ? 1 : 3);
 }
 
 }  // namespace

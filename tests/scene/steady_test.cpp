@@ -37,7 +37,7 @@ class Swing {
 public:
     Swing(std::uint64_t objects, unsigned threads)
         : scene(SceneOptions{threads}), boxes_(samples::make_scene("uniform", objects, 1)), ids_(objects) {
-        scene.add(Objects{std::span<const Box3f>(boxes_)}, ids_);
+        scene.add(Objects{boxes_}, ids_);
     }
 
     void frame(std::uint64_t begin, std::uint64_t count) {
@@ -74,10 +74,10 @@ TEST(SteadyScene, TakesNothingFromTheHeap) {
         for (int i = 0; i < count; ++i) swing.frame(std::uint64_t(i / 2 % 20) * 300, 300);
     };
     frames(80);
-    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = test::peak_rss();
+    const std::uint64_t before = allocations, changes = swing.changes, full = swing.full, peak = peak_rss();
     frames(80);
     EXPECT_EQ(allocations - before, 0u);
-    EXPECT_LE(test::peak_rss() - peak, 64u << 10);
+    EXPECT_LE(peak_rss() - peak, 64u << 10);
     EXPECT_GT(swing.changes, changes);
     EXPECT_EQ(swing.full, full);
 }
@@ -95,7 +95,7 @@ TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
             auto boxes = samples::make_scene("dense", objects, 1);
             std::vector<ObjectId> ids(objects);
             Scene scene({1});
-            scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+            scene.add(Objects{boxes}, ids);
             const std::uint64_t before = scene.step().pairs();
             for (std::uint64_t i = 0; i < moved; ++i) boxes[i] = boxes[objects - 1 - i];
             scene.move(std::span(ids).first(moved), std::span<const Box3f>(boxes).first(moved));
@@ -122,18 +122,18 @@ TEST(SceneMemory, AStepThatRunsOutOfItMayBeRepeated) {
 }
 
 TEST(SceneMemory, IsBounded) {
-    constexpr std::uint64_t objects = test::scaled(1'000'000, 20);
+    constexpr std::uint64_t objects = scaled(1'000'000, 20);
     const auto boxes = samples::make_scene("uniform", objects, 1);
     std::vector<ObjectId> ids(objects, ObjectId{0, 0});
-    const std::uint64_t before = test::peak_rss();
+    const std::uint64_t before = peak_rss();
     Scene scene({2});
-    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     const std::uint64_t pairs = scene.step().pairs();
     scene.move(std::span(ids).first(100), std::span<const Box3f>(boxes).first(100));
     EXPECT_FALSE(scene.step().full);
-    const double bytes = double(test::peak_rss() - before);
+    const double bytes = double(peak_rss() - before);
     RecordProperty("bytes_per_object", std::to_string(bytes / double(objects)));
-    if (!test::sanitized) {
+    if (!sanitized) {
         EXPECT_LE(bytes, 120 * double(objects) + 16 * double(pairs));
     }
 }

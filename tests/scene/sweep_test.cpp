@@ -16,7 +16,7 @@ class FastBullet : public ::testing::Test {
 protected:
     FastBullet() {
         const std::vector<Box3f> boxes = {bullet_at(-3), {{0, 0, 0}, {0.2f, 1, 1}}};
-        scene_.add(Objects{std::span<const Box3f>(boxes)}, ids_);
+        scene_.add(Objects{boxes}, ids_);
         EXPECT_EQ(scene_.step().pairs(), 0u);
     }
 
@@ -63,7 +63,7 @@ TEST(SweptObjects, AreFoundOnceByQueriesAfterTheStep) {
     auto boxes = samples::make_scene("uniform", 20'000, 1);
     std::vector<ObjectId> ids(boxes.size());
     Scene scene{{1}};
-    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     (void)scene.step();
     std::rotate(boxes.begin(), boxes.begin() + 1, boxes.end());  // each object goes to the place of another
     scene.sweep(std::span(ids).first(2'000), std::span<const Box3f>(boxes).first(2'000));

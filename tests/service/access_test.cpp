@@ -24,8 +24,7 @@ protected:
     }
     std::string socket() const { return "unix:" + folder_.file("socket"); }
     static ClientOptions with(const std::string& token) {
-        ClientOptions options;
-        options.token = token;
+        ClientOptions options{.token = token};
         return options;
     }
     std::string refusal_of(service::ServerOptions options, ErrorCode code) const {
@@ -94,7 +93,7 @@ TEST_F(Access, TokenFilesThatHoldNoneAreRefused) {
     EXPECT_EQ(refused("a 0123456789abcdef\nb 0123456789abcdef\n"),
               file + ": line 2: an earlier line has the same name or token");
     ASSERT_EQ(::unlink(file.c_str()), 0);
-    EXPECT_NE(refusal_of(with_tokens(socket()), ErrorCode::io_failed).find(file), std::string::npos);
+    EXPECT_TRUE(has_text(refusal_of(with_tokens(socket()), ErrorCode::io_failed), file));
 }
 
 TEST_F(Access, TokenFilesOfClientsHaveOneToken) {

@@ -17,12 +17,6 @@
 namespace octopair::test {
 namespace {
 
-using test::Answer;
-using test::Asked;
-using test::Case;
-using test::Scene;
-using test::Served;
-
 void use_processes(service::ServerOptions& options) {
     options.engine_name = "processes";
     options.engine = [](unsigned width) { return make_process_engine(width); };
@@ -36,20 +30,20 @@ struct Found {
 Found listed(Engine& engine, std::span<const Box3f> boxes, Order order) {
     PairList list;
     (void)engine.find_pairs({boxes, {}}, list, {.order = order});
-    test::Hash hash;
+    Hash hash;
     for (const auto chunk : list.chunks()) hash.add(chunk);
     return {list.size(), hash.value()};
 }
 
 Found streamed(Engine& engine, std::span<const Box3f> boxes, Order order) {
-    test::Hash hash;
+    Hash hash;
     const PairSink sink = [&](std::span<const Pair> batch) { hash.add(batch); };
     return {engine.stream_pairs({boxes, {}}, sink, {.order = order}).pairs, hash.value()};
 }
 
 /// Tests a scene whose nested octrees once reported pairs twice. With `verify`, the client checks the received pairs.
 TEST(ServedExactness, GivesEachPairOnce) {
-    const std::vector<Box3f> boxes = test::long_tailed_boxes(test::scaled(40'000, 4), 2);
+    const std::vector<Box3f> boxes = long_tailed_boxes(scaled(40'000, 4), 2);
     const Served served;
     const auto engine = served.client();
     for (const Order order : {Order::ascending, Order::octal}) {
@@ -63,8 +57,8 @@ TEST(ServedExactness, GivesEachPairOnce) {
 class ServedHashes : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ServedHashes, AreThoseOfThreads) {
-    const test::Pinned& pinned = test::pinned_scene(GetParam());
-    if (test::sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a call takes a second under sanitizers";
+    const Pinned& pinned = pinned_scene(GetParam());
+    if (sanitized && pinned.pairs > 1'000'000) GTEST_SKIP() << "a call takes a second under sanitizers";
     const std::vector<Box3f> boxes = samples::make_scene(GetParam(), pinned.objects, 1);
     const Found ascending{pinned.pairs, pinned.pair_hash};
     const Found octal = listed(*make_local_engine(2), boxes, Order::octal);
@@ -75,7 +69,7 @@ TEST_P(ServedHashes, AreThoseOfThreads) {
         EXPECT_EQ(streamed(*engine, boxes, Order::ascending), ascending);
         EXPECT_EQ(listed(*engine, boxes, Order::octal), octal);
         EXPECT_EQ(streamed(*engine, boxes, Order::octal), octal);
-        EXPECT_EQ(engine->count_pairs({std::span(boxes), {}}), pinned.pairs);
+        EXPECT_EQ(engine->count_pairs({boxes}), pinned.pairs);
         EXPECT_TRUE(served.comes_to_rest());
     }
 }
@@ -85,25 +79,22 @@ std::vector<std::string> sample_kinds() {
     return {kinds.begin(), kinds.end()};
 }
 
-INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), param_name);
 
 /// Returns the answer to a call with the objects of a case. The count and the truncation come from the call's summary.
 Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
-    Options options;
-    options.order = asked.order;
-    options.margin = a_case.margin;
-    options.limit = asked.limit;
-    options.buffer_bytes = a_case.buffer_bytes;
+    Options options{
+        .order = asked.order, .margin = a_case.margin, .limit = asked.limit, .buffer_bytes = a_case.buffer_bytes};
     const Input input = a_case.input();
     Answer answer;
     Summary summary;
-    if (asked.how == test::How::list) {
+    if (asked.how == How::list) {
         PairList list;
         summary = engine.find_pairs(input, list, options);
         answer.pairs = list.to_vector();
     } else {
         const PairSink keep = [&](auto batch) { answer.pairs.insert(answer.pairs.end(), batch.begin(), batch.end()); };
-        const PairSink sink = asked.how == test::How::stream ? keep : PairSink();
+        const PairSink sink = asked.how == How::stream ? keep : PairSink();
         summary = engine.stream_pairs(input, sink, options);
     }
     answer.count = summary.pairs;
@@ -114,14 +105,14 @@ Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {
 TEST(ServedProperty, AgreesWithThreads) {
     const Served threads, processes(use_processes);
     const auto local = make_local_engine(2), one = threads.client(), other = processes.client();
-    const auto kinds = test::all_kind_names();
+    const auto kinds = all_kind_names();
     const bool held = rc::check("a server finds what threads find", [&] {
         const auto kind = *rc::gen::elementOf(kinds);
         const auto seed = *rc::gen::arbitrary<std::uint32_t>();
-        for (std::uint64_t i = 0; i < test::scaled(3, 3); ++i) {
-            const Case a_case = test::make_case(kind, seed + i);
+        for (std::uint64_t i = 0; i < scaled(3, 3); ++i) {
+            const Case a_case = make_case(kind, seed + i);
             RC_LOG() << kind << ", seed " << seed + i << ": " << a_case.describe() << "\n";
-            for (Asked asked : test::all_ways()) {
+            for (Asked asked : all_ways()) {
                 if (asked.windows) asked.limit = a_case.limit;
                 const Answer expected = answer_of(*local, a_case, asked);
                 RC_ASSERT(answer_of(*one, a_case, asked) == expected);
@@ -154,7 +145,7 @@ TEST(ServedJobs, AreThoseOfThreads) {
 
 TEST(ServedProgress, NeverFallsAndEndsAtOne) {
     const Served served;
-    const Scene scene("clustered", test::scaled(200'000, 4), 1);
+    const Scene scene("clustered", scaled(200'000, 4), 1);
     std::vector<double> told;
     Options options;
     options.progress = [&](double done) { told.push_back(done); };

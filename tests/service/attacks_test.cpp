@@ -2,7 +2,6 @@
 // resources for long, and a valid job at the same time is done.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <thread>
 
 #include "processes/leftovers.hpp"
@@ -18,11 +17,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
-using test::comes_true;
-using test::http2_frame;
-using test::http2_preface;
-using test::RawSocket;
-using test::Served;
 
 void stall_soon(service::ServerOptions& options) { options.stall = seconds(1); }
 
@@ -50,7 +44,7 @@ std::string noise(std::size_t bytes) {
 }
 
 TEST_P(ServedAttacks, OtherLanguages) {
-    const std::string settings = http2_frame({test::settings_frame}, {});
+    const std::string settings = http2_frame({settings_frame}, {});
     const std::string preface(http2_preface);
     for (const std::string& words :
          {noise(100'000), std::string("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"), std::string(70'000, '\0'),
@@ -61,7 +55,7 @@ TEST_P(ServedAttacks, OtherLanguages) {
         (void)socket.send(words);
         EXPECT_TRUE(socket.is_closed_within(minutes(1))) << words.substr(0, 40);
     }
-    test::check_serves(served_.address());
+    check_serves(served_.address());
 }
 
 TEST_P(ServedAttacks, AByteNowAndThen) {
@@ -74,7 +68,7 @@ TEST_P(ServedAttacks, AByteNowAndThen) {
         },
         minutes(1));
     EXPECT_TRUE(closed);
-    test::check_serves(served_.address());
+    check_serves(served_.address());
 }
 
 TEST_P(ServedAttacks, SilenceIsNotWaitedFor) {
@@ -85,51 +79,50 @@ TEST_P(ServedAttacks, SilenceIsNotWaitedFor) {
 /// A call whose message is never complete.
 TEST_P(ServedAttacks, AByteNowAndThenOfAMessage) {
     RawSocket socket(served_.address());
-    ASSERT_TRUE(socket.send(std::string(http2_preface) + http2_frame({test::settings_frame}, {}) +
-                            test::grpc_head(1, "Detect") +
-                            http2_frame({test::data_frame, 0, 1}, test::grpc_prefix(1000))));
+    ASSERT_TRUE(socket.send(std::string(http2_preface) + http2_frame({settings_frame}, {}) + grpc_head(1, "Detect") +
+                            http2_frame({data_frame, 0, 1}, grpc_prefix(1000))));
     std::string answer;
     const bool ended = comes_true(
         [&] {
-            (void)socket.send(http2_frame({test::data_frame, 0, 1}, "x"));
+            (void)socket.send(http2_frame({data_frame, 0, 1}, "x"));
             answer += socket.receive(milliseconds(100));
             return answer.find("stall_seconds") != std::string::npos;
         },
         minutes(1));
     EXPECT_TRUE(ended);
-    test::check_serves(served_.address());
+    check_serves(served_.address());
 }
 
 /// Complete messages that hold almost no data.
 TEST_P(ServedAttacks, AnUploadOfAByteNowAndThen) {
-    const auto spec = test::spec_of(100'000);
-    const auto channel = test::open_channel(served_.address());
+    const auto spec = spec_of(100'000);
+    const auto channel = open_channel(served_.address());
     for (const std::string& data : std::vector<std::string>{"x", ""}) {
-        test::RawCall call(channel);
-        ASSERT_TRUE(call.write(test::upload_of(&spec, {})));
+        RawCall call(channel);
+        ASSERT_TRUE(call.write(upload_of(&spec, {})));
         const bool ended = comes_true(
             [&] {
                 std::this_thread::sleep_for(milliseconds(50));
-                return !call.write(test::upload_of(nullptr, data));
+                return !call.write(upload_of(nullptr, data));
             },
             seconds(30));
         EXPECT_TRUE(ended) << "the upload does not end";
         if (!ended) call.cancel();
         const grpc::Status status = call.finish();
-        EXPECT_EQ(test::failure_in(status).limit(), "stall_seconds") << status.error_message();
+        EXPECT_EQ(failure_in(status).limit(), "stall_seconds") << status.error_message();
         EXPECT_TRUE(served_.comes_to_rest());
     }
 }
 
 TEST_P(ServedAttacks, AResultThatNobodyReads) {
     const std::vector<Box3f> boxes(3000);  // 36 MB of pairs
-    const auto channel = test::open_channel(served_.address());
-    const auto spec = test::spec_of(boxes.size());
-    test::RawCall call(channel);
-    ASSERT_TRUE(call.write(test::upload_of(&spec, test::bytes_of(boxes))));
+    const auto channel = open_channel(served_.address());
+    const auto spec = spec_of(boxes.size());
+    RawCall call(channel);
+    ASSERT_TRUE(call.write(upload_of(&spec, bytes_of(boxes))));
     ASSERT_TRUE(comes_true([&] { return served_.load().memory_bytes > 0; }, minutes(1)));
     EXPECT_TRUE(served_.comes_to_rest());
-    test::check_serves(served_.address());
+    check_serves(served_.address());
     EXPECT_FALSE(call.finish().ok());
 }
 
@@ -137,7 +130,7 @@ TEST_P(ServedAttacks, AResultThatNobodyReads) {
 class Flood {
 public:
     Flood(const std::string& address, std::string frames) : socket_(address), frames_(std::move(frames)) {
-        (void)socket_.send(std::string(http2_preface) + http2_frame({test::settings_frame}, {}));
+        (void)socket_.send(std::string(http2_preface) + http2_frame({settings_frame}, {}));
     }
     /// Sends until `most` bytes are sent, or the server accepts no more.
     void run(std::uint64_t most) {
@@ -157,27 +150,25 @@ std::string repeated(const std::string& frame, int times) {
 }
 
 TEST(ServerAttacks, FloodsOfFramesTakeNoMemory) {
-    test::ServerProgram server;
+    ServerProgram server;
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     const std::uint64_t before = server.memory();
     std::string resets;
     for (std::uint32_t stream = 1; stream < 2000; stream += 2) {
-        resets += test::grpc_head(stream, "Detect") +
-                  http2_frame({test::reset_frame, 0, stream}, std::string("\0\0\0\x08", 4));
+        resets += grpc_head(stream, "Detect") + http2_frame({reset_frame, 0, stream}, std::string("\0\0\0\x08", 4));
     }
-    const std::uint64_t bytes = test::scaled(20'000'000, 10);
+    const std::uint64_t bytes = scaled(20'000'000, 10);
     std::vector<std::jthread> floods;
-    for (const std::string& frames :
-         {repeated(http2_frame({test::settings_frame}, std::string("\0\4\0\0\xff\xff", 6)), 1000),
-          repeated(http2_frame({test::ping_frame}, "12345678"), 1000), resets}) {
+    for (const std::string& frames : {repeated(http2_frame({settings_frame}, std::string("\0\4\0\0\xff\xff", 6)), 1000),
+                                      repeated(http2_frame({ping_frame}, "12345678"), 1000), resets}) {
         floods.emplace_back([&, frames] { Flood(server.address(), frames).run(bytes); });
     }
     const std::vector<Box3f> boxes(1000);
-    for (int i = 0; i < 20; ++i) EXPECT_EQ(engine->count_pairs({std::span(boxes), {}}), 499'500u);
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(engine->count_pairs({boxes}), 499'500u);
     floods.clear();
     EXPECT_TRUE(server.lives());
-    EXPECT_LT(server.memory(), before + (std::uint64_t(test::sanitized ? 1500 : 300) << 20));
-    test::check_serves(server.address());
+    EXPECT_LT(server.memory(), before + (std::uint64_t(sanitized ? 1500 : 300) << 20));
+    check_serves(server.address());
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
-#include <thread>
-
 #include "engine/jobs.hpp"
 #include "processes/leftovers.hpp"
 #include "service/gate.hpp"
@@ -18,14 +16,11 @@ namespace octopair::test {
 namespace {
 
 using std::chrono::minutes;
-using test::comes_true;
-using test::Gate;
-using test::Served;
 
 /// Puts the engines behind the gate. Sets the stall timeout so long that no stalled call ends.
 Served::Change patient(Gate& gate) {
     return [&gate](service::ServerOptions& options) {
-        options.engine = test::gated_engines(gate);
+        options.engine = gated_engines(gate);
         options.engine_widths = {1, 1, 0};
         options.stall = std::chrono::hours(10);
     };
@@ -45,17 +40,17 @@ protected:
     }
     void expect_serves() {
         gate_.open();
-        test::check_serves(served_.address());
+        check_serves(served_.address());
     }
 
     Gate gate_;
     const Served served_{patient(gate_)};
-    const std::vector<Box3f> few_ = test::make_boxes("dense", 100, 1);
-    const std::vector<Box3f> many_ = test::make_boxes("dense", 30'000, 1);
+    const std::vector<Box3f> few_ = make_boxes("dense", 100, 1);
+    const std::vector<Box3f> many_ = make_boxes("dense", 30'000, 1);
 };
 
 TEST_F(ServedCancel, WhileUploading) {
-    const std::vector<Box3f> boxes = test::make_boxes("uniform", test::scaled(3'000'000, 10), 1);
+    const std::vector<Box3f> boxes = make_boxes("uniform", scaled(3'000'000, 10), 1);
     expect_cancelled(boxes, [&] { return served_.load().jobs == 1; });
     expect_serves();
 }
@@ -93,8 +88,8 @@ TEST_F(ServedCancel, WhileStreaming) {
         received += pairs.size();
         stop.request_stop();
     };
-    const auto call = [&] { (void)engine->stream_pairs({std::span(crowd), {}}, sink, {}, stop.get_token()); };
-    EXPECT_EQ(test::code_of(call), ErrorCode::cancelled);
+    const auto call = [&] { (void)engine->stream_pairs({crowd}, sink, {}, stop.get_token()); };
+    EXPECT_EQ(code_of(call), ErrorCode::cancelled);
     EXPECT_GT(received, 0u);
     EXPECT_LT(received, std::uint64_t(1999 * 1000));
     EXPECT_TRUE(served_.comes_to_rest());
@@ -102,20 +97,18 @@ TEST_F(ServedCancel, WhileStreaming) {
 }
 
 TEST_F(ServedCancel, BeforeItBegins) {
-    std::stop_source stop;
-    stop.request_stop();
     const auto engine = served_.client();
-    const auto call = [&] { (void)engine->count_pairs({std::span(few_), {}}, {}, stop.get_token()); };
-    EXPECT_EQ(test::code_of(call), ErrorCode::cancelled);
+    const auto call = [&] { (void)engine->count_pairs({few_}, {}, requested_stop()); };
+    EXPECT_EQ(code_of(call), ErrorCode::cancelled);
     EXPECT_TRUE(served_.comes_to_rest());
 }
 
 TEST_F(ServedCancel, OfAnUploadThatStandsStill) {
-    const auto channel = test::open_channel(served_.address());
-    const auto spec = test::spec_of(1000);
+    const auto channel = open_channel(served_.address());
+    const auto spec = spec_of(1000);
     for (const std::uint64_t objects : {0, 1, 999}) {
-        test::RawCall call(channel);
-        ASSERT_TRUE(call.write(test::upload_of(&spec, test::bytes_of_boxes(objects))));
+        RawCall call(channel);
+        ASSERT_TRUE(call.write(upload_of(&spec, bytes_of_boxes(objects))));
         // The server takes the slot of a job before its memory, so that one of them does not imply the other.
         ASSERT_TRUE(comes_true([&] { return served_.load().memory_bytes > 0; }, minutes(1)));
         EXPECT_EQ(served_.load().jobs, 1u);
@@ -158,15 +151,15 @@ class ServedKilledClient : public ServedCancel {
 protected:
     std::string save(const std::vector<Box3f>& boxes) {
         const std::string path = folder_.file("boxes.npy");
-        test::write_file(path, test::npy_of(io::NpyType::float32, {boxes.size(), 6}, boxes));
+        write_file(path, npy_of(io::NpyType::float32, {boxes.size(), 6}, boxes));
         return path;
     }
 
-    test::TemporaryDirectory folder_;
+    TemporaryDirectory folder_;
 };
 
 TEST_F(ServedKilledClient, WhileItUploads) {
-    ClientProgram client(save(test::make_boxes("uniform", test::scaled(2'000'000, 10), 1)), served_.address());
+    ClientProgram client(save(make_boxes("uniform", scaled(2'000'000, 10), 1)), served_.address());
     ASSERT_TRUE(comes_true([&] { return served_.load().jobs == 1; }, minutes(1)));
     client.kill();
     EXPECT_TRUE(served_.comes_to_rest());

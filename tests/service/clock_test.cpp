@@ -17,16 +17,15 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using test::ServerProgram;
 
 constexpr const char* fake_time = "/usr/lib/x86_64-linux-gnu/faketime/libfaketimeMT.so.1";
 
 class ServerClock : public ::testing::TestWithParam<const char*> {
 protected:
     void SetUp() override {
-        if (test::sanitized) GTEST_SKIP() << "a sanitizer must be loaded before libfaketime";
+        if (sanitized) GTEST_SKIP() << "a sanitizer must be loaded before libfaketime";
         ASSERT_TRUE(std::filesystem::exists(fake_time)) << "install the package faketime";
-        test::write_file(folder_.file("time"), "+0");
+        write_file(folder_.file("time"), "+0");
     }
     /// Returns the setting of a server whose clock this test changes.
     ServerProgram::Setting setting() const {
@@ -50,9 +49,9 @@ protected:
         with.arguments += arguments;
         return server_.emplace(with);
     }
-    void set_clock() const { test::write_file(folder_.file("time"), GetParam()); }
+    void set_clock() const { write_file(folder_.file("time"), GetParam()); }
 
-    const test::TemporaryDirectory folder_;
+    const TemporaryDirectory folder_;
     std::optional<ServerProgram> server_;
 };
 
@@ -64,18 +63,18 @@ TEST_P(ServerClock, IsSetWhileAJobRuns) {
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     const std::vector<Box3f> heap(40'000);
     Job job = engine->submit_stream(heap, {});
-    const auto channel = test::open_channel(server.address());
-    const auto spec = test::spec_of(1000);
-    test::RawCall upload(channel);
-    ASSERT_TRUE(upload.write(test::upload_of(&spec, {})));
+    const auto channel = open_channel(server.address());
+    const auto spec = spec_of(1000);
+    RawCall upload(channel);
+    ASSERT_TRUE(upload.write(upload_of(&spec, {})));
     std::this_thread::sleep_for(milliseconds(200));
     EXPECT_EQ(job.state(), JobState::running);
     set_clock();
     EXPECT_EQ(job.summary().pairs, heap.size() * (heap.size() - 1) / 2);
     // By default an upload may stall for a minute, which has not passed.
-    ASSERT_TRUE(upload.write(test::upload_of(nullptr, test::bytes_of_boxes(1000))));
+    ASSERT_TRUE(upload.write(upload_of(nullptr, bytes_of_boxes(1000))));
     EXPECT_TRUE(upload.finish().ok());
-    test::check_serves(server.address());
+    check_serves(server.address());
     server.signal(SIGTERM);
     EXPECT_EQ(server.wait(), 0) << server.log();
 }
@@ -85,17 +84,16 @@ TEST_P(ServerClock, WhatTakesTooLongStillEnds) {
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     const std::vector<Box3f> heap(400'000);  // takes much longer than 3 s to count
     Job job = engine->submit_stream(heap, {});
-    const auto channel = test::open_channel(server.address());
-    const auto spec = test::spec_of(1000);
-    test::RawCall upload(channel);
-    ASSERT_TRUE(upload.write(test::upload_of(&spec, {})));
+    const auto channel = open_channel(server.address());
+    const auto spec = spec_of(1000);
+    RawCall upload(channel);
+    ASSERT_TRUE(upload.write(upload_of(&spec, {})));
     while (job.state() == JobState::queued) std::this_thread::sleep_for(milliseconds(10));
     set_clock();
     ASSERT_TRUE(job.wait_for(minutes(2)));
-    EXPECT_NE(test::error_of(ErrorCode::resource_limit, [&] { (void)job.summary(); }).find("job_seconds"),
-              std::string::npos);
-    EXPECT_EQ(test::failure_in(upload.finish()).limit(), "stall_seconds");
-    test::check_serves(server.address());
+    expect_error(ErrorCode::resource_limit, "job_seconds", [&] { (void)job.summary(); });
+    EXPECT_EQ(failure_in(upload.finish()).limit(), "stall_seconds");
+    check_serves(server.address());
 }
 
 }  // namespace

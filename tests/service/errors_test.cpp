@@ -7,21 +7,16 @@
 #include "processes/asked.hpp"
 #include "service/gate.hpp"
 #include "service/served.hpp"
-#include "support/error_place.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
 namespace {
 
-using test::Asked;
-using test::Scene;
-using test::Served;
-
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 std::string words_of(Engine& engine, const Scene& scene, const Asked& asked, ErrorCode& code) {
     try {
-        (void)test::ask(engine, scene, asked);
+        (void)ask(engine, scene, asked);
     } catch (const Error& error) {
         code = error.code();
         return error.what();
@@ -39,7 +34,7 @@ protected:
         EXPECT_EQ(words_of(*remote_, scene, asked, code), expected);
         EXPECT_EQ(int(code), int(expected_code));
         EXPECT_TRUE(served_.comes_to_rest());
-        test::check_serves(served_.address());
+        check_serves(served_.address());
     }
 
     const Served served_;
@@ -52,13 +47,13 @@ TEST_F(ServedErrors, OfABoxWithItsIndexInEitherSet) {
             Scene scene("uniform", objects, 1);
             scene.first[objects / 2 + 3].min[1] = not_a_number;
             scene.wide_first[objects / 2 + 3].min[1] = not_a_number;
-            expect_same(scene, {.how = test::How::list, .wide = wide});
-            expect_same(scene, {.how = test::How::stream, .join = true, .wide = wide});
-            expect_same(scene, {.how = test::How::count, .wide = wide});
+            expect_same(scene, {.how = How::list, .wide = wide});
+            expect_same(scene, {.how = How::stream, .join = true, .wide = wide});
+            expect_same(scene, {.how = How::count, .wide = wide});
             Scene other("uniform", objects, 1);
             std::swap(other.second[7].min[0], other.second[7].max[0]);
             std::swap(other.wide_second[7].min[0], other.wide_second[7].max[0]);
-            expect_same(other, {.how = test::How::list, .join = true, .wide = wide});
+            expect_same(other, {.how = How::list, .join = true, .wide = wide});
         }
     }
 }
@@ -66,23 +61,23 @@ TEST_F(ServedErrors, OfABoxWithItsIndexInEitherSet) {
 TEST_F(ServedErrors, OfPaddingsAndOptions) {
     Scene scene("uniform", 100, 1);
     scene.padding[99] = -1;
-    expect_same(scene, {.how = test::How::list, .padded = true});
+    expect_same(scene, {.how = How::list, .padded = true});
     scene.padding[99] = std::numeric_limits<double>::infinity();
-    expect_same(scene, {.how = test::How::list, .padded = true});
+    expect_same(scene, {.how = How::list, .padded = true});
     scene.padding.pop_back();
-    expect_same(scene, {.how = test::How::list, .padded = true});
-    expect_same(scene, {.how = test::How::list, .margin = -1});
-    expect_same(scene, {.how = test::How::list, .margin = not_a_number});
+    expect_same(scene, {.how = How::list, .padded = true});
+    expect_same(scene, {.how = How::list, .margin = -1});
+    expect_same(scene, {.how = How::list, .margin = not_a_number});
 }
 
 TEST_F(ServedErrors, LeaveTheListEmpty) {
-    const std::vector<Box3f> good = test::make_boxes("dense", 500, 1);
+    const std::vector<Box3f> good = make_boxes("dense", 500, 1);
     std::vector<Box3f> bad = good;
     bad[499].max[2] = not_a_number;
     PairList list;
-    (void)remote_->find_pairs({std::span(good), {}}, list);
+    (void)remote_->find_pairs({good}, list);
     ASSERT_GT(list.size(), 0u);
-    EXPECT_THROW((void)remote_->find_pairs({std::span(bad), {}}, list), Error);
+    EXPECT_THROW((void)remote_->find_pairs({bad}, list), Error);
     EXPECT_EQ(list.size(), 0u);
 }
 
@@ -97,9 +92,9 @@ TEST_F(ServedErrors, OfSinksAndProgressReachTheCaller) {
     EXPECT_THROW((void)remote_->count_pairs(scene.objects({}), options), Own);
     EXPECT_TRUE(served_.comes_to_rest());
     const std::vector<Box3f> few(20);
-    EXPECT_THROW((void)remote_->stream_pairs({std::span(few), {}}, sink), Own);
-    EXPECT_THROW((void)remote_->count_pairs({std::span(few), {}}, options), Own);
-    test::check_serves(served_.address());
+    EXPECT_THROW((void)remote_->stream_pairs({few}, sink), Own);
+    EXPECT_THROW((void)remote_->count_pairs({few}, options), Own);
+    check_serves(served_.address());
 }
 
 TEST(ServedFailures, DoNotNameFoldersOfTheServer) {
@@ -107,10 +102,7 @@ TEST(ServedFailures, DoNotNameFoldersOfTheServer) {
     const Served served([&](service::ServerOptions& options) { options.engine = gated_engines(gate); });
     gate.fail("worker processes end at their start, with a signal: /opt/secret place/libexec/octopair-worker");
     const std::vector<Box3f> boxes(3);
-    EXPECT_EQ(error_of(ErrorCode::engine_failed,
-                       [&] {
-                           (void)served.client()->count_pairs({std::span(boxes), {}});
-                       }),
+    EXPECT_EQ(error_of(ErrorCode::engine_failed, [&] { (void)served.client()->count_pairs({boxes}); }),
               "worker processes end at their start, with a signal: octopair-worker");
 }
 

@@ -110,8 +110,7 @@ protected:
         };
     }
     static std::unique_ptr<Engine> client(const Served& served, const std::string& token) {
-        ClientOptions options;
-        options.token = token;
+        ClientOptions options{.token = token};
         return connect(served.address(), options);
     }
     static std::unique_ptr<Engine> polite(const Served& served) { return client(served, "fedcba9876543210"); }
@@ -175,7 +174,7 @@ TEST_F(ServedFairness, OneClientAloneHasAsManyEnginesAsWorkers) {
     const std::vector<Box3f> crowd(10'000, Box3f{{0, 0, 0}, {1, 1, 1}});  // 50 million pairs
     const auto count_again_and_again = [&](const std::stop_token& stop) {
         const auto engine = connect(server.address(), {.token = "0123456789abcdef"});
-        while (!stop.stop_requested()) (void)engine->count_pairs(Objects{crowd});
+        while (!stop.stop_requested()) (void)engine->count_pairs({crowd});
     };
     (void)connect(server.address(),
                   {.token = "0123456789abcdef"});  // waits until the server listens and has written its log
@@ -202,11 +201,11 @@ TEST_F(ServedFairness, IdleEnginesAreMadeAnew) {
     std::vector<Box3f> boxes;
     for (const std::size_t objects : {30'000u, 5'000u, 100u}) {
         boxes = make_boxes("dense", objects, 1);
-        engine->find_pairs(Objects{boxes}, pairs);
+        engine->find_pairs({boxes}, pairs);
     }
     ASSERT_TRUE(comes_true([&] { return made >= 6; }, std::chrono::minutes(1)));
     const auto before = pairs.size();
-    engine->find_pairs(Objects{boxes}, pairs);
+    engine->find_pairs({boxes}, pairs);
     EXPECT_EQ(pairs.size(), before);
 }
 

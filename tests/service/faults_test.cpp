@@ -10,6 +10,7 @@
 #include "service/metrics_page.hpp"
 #include "service/served.hpp"
 #include "service/server_program.hpp"
+#include "support/calls.hpp"
 #include "support/compare.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
@@ -19,18 +20,12 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using test::comes_true;
-using test::ServerProgram;
 
 std::unique_ptr<Engine> client_of(const ServerProgram& server) {
     return connect(server.address(), {.patience = minutes(2)});
 }
 
-std::vector<Pair> right_pairs(const std::vector<Box3f>& boxes) {
-    PairList list;
-    (void)make_local_engine(2)->find_pairs({std::span(boxes), {}}, list);
-    return list.to_vector();
-}
+std::vector<Pair> right_pairs(const std::vector<Box3f>& boxes) { return listed_pairs(*make_local_engine(2), {boxes}); }
 
 /// A streamed job whose sink waits when `hold_from` pairs have arrived.
 class StreamedJob {
@@ -69,15 +64,15 @@ private:
 class ServerFaults : public ::testing::Test {
 protected:
     const std::vector<Box3f> crowd_ = std::vector<Box3f>(2500);  // 25 MB of pairs
-    const std::vector<Box3f> large_ = test::make_boxes("uniform", test::scaled(400'000, 4), 1);
-    const std::vector<Box3f> small_ = test::make_boxes("clustered", 3000, 1);
+    const std::vector<Box3f> large_ = make_boxes("uniform", scaled(400'000, 4), 1);
+    const std::vector<Box3f> small_ = make_boxes("clustered", 3000, 1);
     const std::vector<Pair> crowd_pairs_ = right_pairs(crowd_), large_pairs_ = right_pairs(large_),
                             small_pairs_ = right_pairs(small_);
 };
 
 TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
     ServerProgram server;
-    const std::vector<Box3f> heap(test::scaled(80'000, 8));  // takes long to count
+    const std::vector<Box3f> heap(scaled(80'000, 8));  // takes long to count
     const std::uint64_t heap_pairs = heap.size() * (heap.size() - 1) / 2;
     const auto uploader = client_of(server), runner = client_of(server), other = client_of(server);
     for (int round = 0; round < 3; ++round) {
@@ -96,10 +91,10 @@ TEST_F(ServerFaults, KillsWhileClientsUploadRunAndStream) {
         EXPECT_EQ(running.state(), JobState::running);
         EXPECT_EQ(uploading.state(), JobState::running);
         server.kill_and_restart();
-        EXPECT_TRUE(test::same_bytes(streaming.take(), crowd_pairs_));
+        EXPECT_TRUE(same_bytes(streaming.take(), crowd_pairs_));
         EXPECT_EQ(running.summary().pairs, heap_pairs);
-        EXPECT_TRUE(test::same_bytes(uploading.take_pairs().to_vector(), large_pairs_));
-        EXPECT_TRUE(test::same_bytes(asking.take_pairs().to_vector(), small_pairs_));
+        EXPECT_TRUE(same_bytes(uploading.take_pairs().to_vector(), large_pairs_));
+        EXPECT_TRUE(same_bytes(asking.take_pairs().to_vector(), small_pairs_));
     }
 }
 
@@ -112,7 +107,7 @@ TEST_F(ServerFaults, KillsOfOneStreamAgainAndAgain) {
         server.kill_and_restart();
         streaming.go_on(next);
     }
-    EXPECT_TRUE(test::same_bytes(streaming.take(), crowd_pairs_));
+    EXPECT_TRUE(same_bytes(streaming.take(), crowd_pairs_));
 }
 
 TEST_F(ServerFaults, KillsAtAnyMoment) {
@@ -127,8 +122,8 @@ TEST_F(ServerFaults, KillsAtAnyMoment) {
             for (int n = 0; n < 3 || !over; ++n) {
                 std::vector<Pair> found;
                 const PairSink sink = [&](auto batch) { found.insert(found.end(), batch.begin(), batch.end()); };
-                EXPECT_EQ(engine->stream_pairs({std::span(boxes), {}}, sink).pairs, pairs.size());
-                EXPECT_TRUE(test::same_bytes(found, pairs));
+                EXPECT_EQ(engine->stream_pairs({boxes}, sink).pairs, pairs.size());
+                EXPECT_TRUE(same_bytes(found, pairs));
             }
         });
     }
@@ -151,24 +146,22 @@ TEST_F(ServerFaults, AStopThatEnds) {
     EXPECT_EQ(job.state(), JobState::running);
     EXPECT_EQ(streaming.state(), JobState::running);
     server.signal(SIGCONT);
-    EXPECT_TRUE(test::same_bytes(job.take_pairs().to_vector(), large_pairs_));
-    EXPECT_TRUE(test::same_bytes(streaming.take(), crowd_pairs_));
+    EXPECT_TRUE(same_bytes(job.take_pairs().to_vector(), large_pairs_));
+    EXPECT_TRUE(same_bytes(streaming.take(), crowd_pairs_));
 }
 
 TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     ServerProgram server({.arguments = "--engine processes --workers 2 --metrics localhost:0"});
-    test::check_serves(server.address());
+    check_serves(server.address());
     const auto faults = [&] {
-        const std::string page = test::metrics_page(server.log()), name = "\noctopair_worker_faults_total ";
+        const std::string page = metrics_page(server.log()), name = "\noctopair_worker_faults_total ";
         const std::size_t found = page.find(name);
         return found == std::string::npos ? -1 : std::stoi(page.substr(found + name.size()));
     };
     EXPECT_EQ(faults(), 0);
     const auto engine = client_of(server);
     const auto expect_right = [&](const std::vector<Box3f>& boxes, const std::vector<Pair>& pairs) {
-        PairList list;
-        (void)engine->find_pairs({std::span(boxes), {}}, list);
-        EXPECT_TRUE(test::same_bytes(list.to_vector(), pairs));
+        EXPECT_TRUE(same_bytes(listed_pairs(*engine, {boxes}), pairs));
     };
     const auto begin = std::chrono::steady_clock::now();
     expect_right(large_, large_pairs_);
@@ -178,7 +171,7 @@ TEST_F(ServerFaults, OfItsWorkersAreMadeGood) {
     for (int i = 0; i < 8 || (faults() < 1 && i < 1000); ++i) {
         const std::jthread killer([&] {
             std::this_thread::sleep_for(whole * (i % 4 + 1) / 5);
-            const auto workers = test::children_of(server.id());
+            const auto workers = children_of(server.id());
             if (!workers.empty()) (void)::kill(workers[std::size_t(i) % workers.size()], SIGKILL);
         });
         expect_right(large_, large_pairs_);

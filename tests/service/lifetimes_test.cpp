@@ -15,20 +15,17 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::minutes;
-using test::comes_true;
-using test::Gate;
-using test::Served;
 
 class ServedLifetimes : public ::testing::Test {
 protected:
     Gate gate_;
     Served served_{[this](service::ServerOptions& options) {
-        options.engine = test::gated_engines(gate_);
+        options.engine = gated_engines(gate_);
         options.engine_widths.instant = 0;  // instant jobs would block gRPC's threads at the gate
         options.stall = std::chrono::hours(10);
     }};
-    const std::vector<Box3f> few_ = test::make_boxes("dense", 100, 1);
-    const std::vector<Box3f> many_ = test::make_boxes("dense", 60'000, 1);
+    const std::vector<Box3f> few_ = make_boxes("dense", 100, 1);
+    const std::vector<Box3f> many_ = make_boxes("dense", 60'000, 1);
 };
 
 TEST_F(ServedLifetimes, AnEngineEndsWithItsJobs) {
@@ -44,7 +41,7 @@ TEST_F(ServedLifetimes, AnEngineEndsWithItsJobs) {
 }
 
 TEST_F(ServedLifetimes, AServerEndsWithItsCalls) {
-    for (int i = 0; i < int(test::scaled(20, 4)); ++i) {
+    for (int i = 0; i < int(scaled(20, 4)); ++i) {
         const auto engine = served_.client(milliseconds(0)), other = served_.client(milliseconds(0));
         const Job job = engine->submit(many_), small = other->submit(few_);
         if (i % 3 != 0) {
@@ -70,9 +67,7 @@ TEST_F(ServedLifetimes, AServerThatComesBackGoesOn) {
         served_.start();
     }
     gate_.open();
-    PairList expected;
-    (void)make_local_engine(2)->find_pairs({std::span(many_), {}}, expected);
-    EXPECT_EQ(job.take_pairs().to_vector(), expected.to_vector());
+    EXPECT_EQ(job.take_pairs().to_vector(), listed_pairs(*make_local_engine(2), {many_}));
     EXPECT_GT(small.summary().pairs, 0u);
 }
 
@@ -89,13 +84,13 @@ TEST_F(ServedLifetimes, AServerThatDrainsLetsJobsEnd) {
 
 TEST_F(ServedLifetimes, LeaveNothingBehind) {
     gate_.open();
-    test::check_serves(served_.address());
+    check_serves(served_.address());
     served_.stop();
-    const auto count = [] { return test::Belongings::now().descriptors; };
+    const auto count = [] { return Belongings::now().descriptors; };
     const std::size_t before = count();
     for (int i = 0; i < 10; ++i) {
         served_.start();
-        test::check_serves(served_.address());
+        check_serves(served_.address());
         served_.stop();
     }
     EXPECT_TRUE(comes_true([&] { return count() <= before + 2; }, minutes(1))) << count() << " after " << before;

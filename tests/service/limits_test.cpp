@@ -17,24 +17,20 @@ namespace {
 
 using std::chrono::minutes;
 using std::chrono::seconds;
-using test::comes_true;
-using test::expect_refused;
-using test::Gate;
-using test::Served;
 
 Served::Change limited(const std::function<void(service::ServerLimits&)>& change) {
     return [change](service::ServerOptions& options) { change(options.limits); };
 }
 
 std::uint64_t count(const Served& served, const std::vector<Box3f>& boxes) {
-    return served.client()->count_pairs({std::span(boxes), {}});
+    return served.client()->count_pairs({boxes});
 }
 
 TEST(ServedLimits, OfObjects) {
     const Served served(limited([](auto& limits) { limits.objects = 100; }));
     const std::vector<Box3f> few(100), many(101), half(51);
     expect_refused("objects", 100, [&] { (void)count(served, many); });
-    const auto join = [&] { (void)served.client()->count_pairs(Join{{std::span(half), {}}, {std::span(half), {}}}); };
+    const auto join = [&] { (void)served.client()->count_pairs(Join{{half}, {half}}); };
     expect_refused("objects", 100, join);
     EXPECT_EQ(count(served, few), 4950u);
     EXPECT_TRUE(served.comes_to_rest());
@@ -58,24 +54,24 @@ TEST(ServedLimits, OfObjectsThatNoMachineHas) {
         const Served served(limited([&](auto& all) {
             if (!limits) all.objects = all.input_bytes = 0;
         }));
-        const auto channel = test::open_channel(served.address());
+        const auto channel = open_channel(served.address());
         // For the last numbers, the number of bytes overflows to a small value.
         for (const std::uint64_t objects : {largest32, largest32 + 1, largest64, largest64 / 24 + 1,
                                             std::uint64_t(1) << 61, std::uint64_t(1) << 63}) {
             for (const bool join : {false, true}) {
-                auto spec = test::spec_of(objects);
+                auto spec = spec_of(objects);
                 if (join) spec.mutable_second()->set_objects(largest64 - objects + 2);
                 SCOPED_TRACE(std::to_string(objects) + (join ? " and a second set; the sum overflows" : ""));
-                test::RawCall call(channel);
-                (void)call.write(test::upload_of(&spec, test::bytes_of_boxes(1)));
+                RawCall call(channel);
+                (void)call.write(upload_of(&spec, bytes_of_boxes(1)));
                 const grpc::Status status = call.finish();
                 EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
-                EXPECT_FALSE(test::failure_in(status).limit().empty());
-                const auto small = test::call_small(channel, test::upload_of(&spec, test::bytes_of_boxes(1)));
+                EXPECT_FALSE(failure_in(status).limit().empty());
+                const auto small = call_small(channel, upload_of(&spec, bytes_of_boxes(1)));
                 EXPECT_EQ(small.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << small.error_message();
             }
         }
-        test::check_serves(served.address());
+        check_serves(served.address());
         EXPECT_TRUE(served.comes_to_rest());
     }
 }
@@ -86,7 +82,7 @@ TEST(ServedLimits, OfPairsKept) {
     const auto engine = served.client();
     PairList list;
     const auto call = [&](std::optional<std::uint64_t> most) {
-        (void)engine->find_pairs({std::span(crowd), {}}, list, {.limit = most});
+        (void)engine->find_pairs({crowd}, list, {.limit = most});
     };
     expect_refused("pairs", 3000, [&] { call({}); });
     expect_refused("pairs", 3000, [&] { call(3001); });
@@ -103,7 +99,7 @@ TEST(ServedLimits, OfMemory) {
     expect_refused("memory_bytes", 8'000'000, [&] { (void)count(served, many); });
     EXPECT_TRUE(served.comes_to_rest());
     PairList list;
-    const auto call = [&] { (void)served.client()->find_pairs({std::span(crowd), {}}, list); };
+    const auto call = [&] { (void)served.client()->find_pairs({crowd}, list); };
     expect_refused("memory_bytes", 8'000'000, call);
     EXPECT_TRUE(served.comes_to_rest());
     EXPECT_EQ(count(served, crowd), 1'999'000u);
@@ -113,7 +109,7 @@ class GatedLimits : public ::testing::Test {
 protected:
     Served serve(const std::function<void(service::ServerLimits&)>& change) {
         return Served([&](service::ServerOptions& options) {
-            options.engine = test::gated_engines(gate_);
+            options.engine = gated_engines(gate_);
             options.engine_widths.instant = 0;  // instant jobs would block gRPC's threads at the gate
             options.stall = std::chrono::hours(10);
             change(options.limits);
@@ -124,16 +120,16 @@ protected:
         std::vector<Job> jobs;
         for (int i = 0; i < 3; ++i) {
             engines.push_back(served.client());
-            jobs.push_back(engines.back()->submit(test::touching_boxes));
+            jobs.push_back(engines.back()->submit(touching_boxes));
         }
         ASSERT_TRUE(comes_true([&] { return served.load().jobs == 3; }, minutes(1)));
         const std::vector<Box3f> many(60'000);
-        expect_refused(limit, 3, [&] { (void)count(served, test::touching_boxes); });
+        expect_refused(limit, 3, [&] { (void)count(served, touching_boxes); });
         expect_refused(limit, 3, [&] { (void)count(served, many); });
         jobs.pop_back();
         ASSERT_TRUE(comes_true([&] { return served.load().jobs == 2; }, minutes(1)));
         gate_.open();
-        EXPECT_EQ(count(served, test::touching_boxes), 1u);
+        EXPECT_EQ(count(served, touching_boxes), 1u);
         for (Job& job : jobs) EXPECT_EQ(job.summary().pairs, 1u);
         EXPECT_TRUE(served.comes_to_rest());
     }
@@ -152,27 +148,27 @@ TEST_F(GatedLimits, OfJobsOfAClient) {
 TEST_F(GatedLimits, OfTime) {
     const Served served = serve([](auto& limits) { limits.job_seconds = 0.3; });
     const std::vector<Box3f> many(60'000);
-    for (const auto& boxes : {test::touching_boxes, many}) {
-        EXPECT_EQ(test::error_of(ErrorCode::resource_limit, [&] { (void)count(served, boxes); }),
+    for (const auto& boxes : {touching_boxes, many}) {
+        EXPECT_EQ(error_of(ErrorCode::resource_limit, [&] { (void)count(served, boxes); }),
                   "job_seconds: the job ran longer than 0.3 s, the limit of the server");
     }
     gate_.open();
-    test::check_serves(served.address());
+    check_serves(served.address());
     EXPECT_TRUE(served.comes_to_rest());
 }
 
 TEST(ServedLimits, OfTimeDoNotCountTheQueue) {
     Gate gate;
     const Served served([&](service::ServerOptions& options) {
-        options.engine = test::gated_engines(gate);
+        options.engine = gated_engines(gate);
         options.engine_widths = {1, 1, 0};
         options.limits.job_seconds = 2;
     });
     const auto first = served.client(), second = served.client();
-    Job before = first->submit(test::touching_boxes);
+    Job before = first->submit(touching_boxes);
     ASSERT_TRUE(gate.wait_for(1));
-    Job job = second->submit(test::touching_boxes);
-    EXPECT_EQ(test::code_of([&] { (void)before.summary(); }), ErrorCode::resource_limit);
+    Job job = second->submit(touching_boxes);
+    EXPECT_EQ(code_of([&] { (void)before.summary(); }), ErrorCode::resource_limit);
     ASSERT_TRUE(gate.wait_for(1));
     gate.open();
     EXPECT_EQ(job.summary().pairs, 1u);
@@ -187,17 +183,17 @@ TEST_P(ConnectionLimits, SayWhy) {
     });
     std::vector<std::unique_ptr<Engine>> engines;
     for (int i = 0; i < 3; ++i) engines.push_back(served.client());
-    test::RawSocket beyond(served.address());
-    (void)beyond.send(test::http2_preface);
+    RawSocket beyond(served.address());
+    (void)beyond.send(http2_preface);
     const std::string frames = beyond.receive(minutes(1));
-    EXPECT_NE(frames.find("at most 3 connections"), std::string::npos) << frames;
+    EXPECT_TRUE(has_text(frames, "at most 3 connections"));
     const auto call = [&] { (void)connect(served.address(), {.connect_timeout = seconds(2)}); };
     for (int i = 0; i < 4; ++i) {
-        EXPECT_NE(test::error_of(ErrorCode::resource_limit, call).find("no more connections"), std::string::npos);
+        expect_error(ErrorCode::resource_limit, "no more connections", call);
     }
-    EXPECT_EQ(engines[0]->count_pairs(test::objects_of(test::touching_boxes)), 1u);
+    EXPECT_EQ(engines[0]->count_pairs(objects_of(touching_boxes)), 1u);
     engines.pop_back();
-    test::check_serves(served.address());
+    check_serves(served.address());
 }
 
 INSTANTIATE_TEST_SUITE_P(, ConnectionLimits, ::testing::Bool(),
@@ -205,10 +201,10 @@ INSTANTIATE_TEST_SUITE_P(, ConnectionLimits, ::testing::Bool(),
 
 TEST(ServedLimits, OfConnectionsForgetWhatWasClosed) {
     const Served served(limited([](auto& limits) { limits.connections = 5; }));
-    for (int i = 0; i < 100; ++i) test::check_serves(served.address());
+    for (int i = 0; i < 100; ++i) check_serves(served.address());
     EXPECT_LE(served.load().connections, 5u);
     const Served unlimited(limited([](auto& limits) { limits.connections = 0; }));
-    for (int i = 0; i < 100; ++i) test::check_serves(unlimited.address());
+    for (int i = 0; i < 100; ++i) check_serves(unlimited.address());
     EXPECT_LT(unlimited.load().connections, 100u);
 }
 

@@ -14,11 +14,6 @@
 namespace octopair::test {
 namespace {
 
-using test::buffer_of;
-using test::bytes_of_boxes;
-using test::RawCall;
-using test::Served;
-using test::upload_of;
 using v1::JobSpec;
 
 class ServedMessages : public ::testing::Test {
@@ -26,7 +21,7 @@ protected:
     ~ServedMessages() override {
         gate_.open();
         EXPECT_TRUE(served_.comes_to_rest());
-        test::check_serves(served_.address());
+        check_serves(served_.address());
     }
 
     grpc::Status send(const std::vector<grpc::ByteBuffer>& messages) {
@@ -38,17 +33,17 @@ protected:
         return call.finish();
     }
     void expect_bad(const grpc::Status& status, const std::string& words) {
-        EXPECT_EQ(int(test::failure_in(status).code()), int(v1::BAD_INPUT)) << status.error_message();
-        EXPECT_NE(status.error_message().find(words), std::string::npos) << status.error_message();
+        EXPECT_EQ(int(failure_in(status).code()), int(v1::BAD_INPUT)) << status.error_message();
+        EXPECT_TRUE(has_text(status.error_message(), words));
     }
 
-    test::Gate gate_;
+    Gate gate_;
     const Served served_{[this](service::ServerOptions& options) {
-        options.engine = test::gated_engines(gate_);
+        options.engine = gated_engines(gate_);
         options.engine_widths = {1, 1, 0};
     }};
-    const std::shared_ptr<grpc::Channel> channel_ = test::open_channel(served_.address());
-    const JobSpec spec_ = test::spec_of(10);
+    const std::shared_ptr<grpc::Channel> channel_ = open_channel(served_.address());
+    const JobSpec spec_ = spec_of(10);
 };
 
 std::string hex_of(const grpc::ByteBuffer& message) {
@@ -122,14 +117,14 @@ TEST_F(ServedMessages, UploadsThatEndEarly) {
     expect_bad(send({}), "before it sent a job spec");
     expect_bad(send({upload_of(&spec_, {})}), "240 bytes before");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(9)), upload_of(nullptr, "12345")}), "19 bytes before");
-    expect_bad(test::call_small(channel_, upload_of(&spec_, bytes_of_boxes(9))), "24 bytes before");
+    expect_bad(call_small(channel_, upload_of(&spec_, bytes_of_boxes(9))), "24 bytes before");
 }
 
 TEST_F(ServedMessages, MoreDataThanSaid) {
     const auto all = upload_of(&spec_, bytes_of_boxes(10)), more = upload_of(nullptr, "x");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(11))}), "more bytes");
     expect_bad(send({upload_of(&spec_, bytes_of_boxes(9)), upload_of(nullptr, bytes_of_boxes(2))}), "more bytes");
-    expect_bad(test::call_small(channel_, upload_of(&spec_, bytes_of_boxes(11))), "more bytes");
+    expect_bad(call_small(channel_, upload_of(&spec_, bytes_of_boxes(11))), "more bytes");
     RawCall running(channel_);
     ASSERT_TRUE(running.write(all));
     ASSERT_TRUE(gate_.wait_for(1));
@@ -138,7 +133,7 @@ TEST_F(ServedMessages, MoreDataThanSaid) {
     RawCall queued(channel_), before(channel_);
     ASSERT_TRUE(before.write(upload_of(&spec_, bytes_of_boxes(10))));
     ASSERT_TRUE(gate_.wait_for(1));
-    const JobSpec other = test::spec_of(1);
+    const JobSpec other = spec_of(1);
     ASSERT_TRUE(queued.write(upload_of(&other, bytes_of_boxes(1))));
     ASSERT_TRUE(queued.write(more));
     expect_bad(queued.finish(), "more bytes");
@@ -148,12 +143,12 @@ TEST_F(ServedMessages, MoreDataThanSaid) {
 TEST_F(ServedMessages, DataAndTheEndAfterTheJobHasEnded) {
     gate_.open();
     const std::vector<Box3f> boxes(2000);  // 16 MB of pairs
-    const JobSpec crowd = test::spec_of(boxes.size());
+    const JobSpec crowd = spec_of(boxes.size());
     for (const auto& late : {upload_of(nullptr, "x"), upload_of(nullptr, {}), upload_of(&crowd, {})}) {
         RawCall call(channel_);
-        ASSERT_TRUE(call.write(upload_of(&crowd, test::bytes_of(boxes))));
+        ASSERT_TRUE(call.write(upload_of(&crowd, bytes_of(boxes))));
         ASSERT_TRUE(call.read());
-        ASSERT_TRUE(test::comes_true([&] { return served_.load().jobs == 0; }, std::chrono::minutes(1)));
+        ASSERT_TRUE(comes_true([&] { return served_.load().jobs == 0; }, std::chrono::minutes(1)));
         (void)call.write(late);
         (void)call.writes_done();
         const grpc::Status status = call.finish();
@@ -167,7 +162,7 @@ TEST_F(ServedMessages, JobsOutOfPlace) {
     expect_bad(send({data}), "the first message has no job spec");
     expect_bad(send({upload_of(nullptr, {})}), "the first message has no job spec");
     expect_bad(send({job, job}), "a second job");
-    expect_bad(test::call_small(channel_, data), "the first message has no job spec");
+    expect_bad(call_small(channel_, data), "the first message has no job spec");
 }
 
 TEST_F(ServedMessages, SpecsThatMakeNoSense) {
@@ -196,16 +191,16 @@ TEST_F(ServedMessages, Garbage) {
     for (const std::string& message : messages) {
         expect_bad(send({buffer_of(message)}), "");
         expect_bad(send({upload_of(&spec_, {}), buffer_of(message)}), "");
-        expect_bad(test::call_small(channel_, buffer_of(message)), "");
+        expect_bad(call_small(channel_, buffer_of(message)), "");
     }
     const auto large = buffer_of(std::string(service::max_message_bytes + 1, 'x'));
-    EXPECT_EQ(test::call_small(channel_, large).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_EQ(call_small(channel_, large).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
     EXPECT_FALSE(send({large}).ok());
 }
 
 TEST_F(ServedMessages, PiecesOfAnySize) {
     gate_.open();
-    const std::string data = test::bytes_of(std::vector<Box3f>(10));
+    const std::string data = bytes_of(std::vector<Box3f>(10));
     for (const std::size_t size : {1, 7, 24, 100, 239, 240}) {
         std::vector<grpc::ByteBuffer> messages = {upload_of(&spec_, {})};
         for (std::size_t at = 0; at < data.size(); at += size)
@@ -221,7 +216,7 @@ TEST_F(ServedMessages, OffsetsBeyondTheResult) {
         JobSpec spec = spec_;
         spec.set_offset(offset);
         RawCall call(channel_);
-        ASSERT_TRUE(call.write(upload_of(&spec, test::bytes_of(std::vector<Box3f>(10)))));
+        ASSERT_TRUE(call.write(upload_of(&spec, bytes_of(std::vector<Box3f>(10)))));
         std::uint64_t pairs = 0;
         while (auto message = call.read()) {
             v1::Download small;

@@ -40,7 +40,7 @@ TEST_F(Metrics, CountJobs) {
     EXPECT_TRUE(comes("octopair_queue_length 0"));
     EXPECT_TRUE(comes("octopair_connections 0"));
     for (const std::string direction : {"received", "sent"}) {
-        EXPECT_EQ(page().find("octopair_" + direction + "_bytes_total 0\n"), std::string::npos) << page();
+        EXPECT_FALSE(has_text(page(), "octopair_" + direction + "_bytes_total 0\n"));
     }
 }
 
@@ -49,16 +49,16 @@ TEST_F(Metrics, CountJobs) {
 TEST_F(Metrics, TellOfResultsThatDoNotFitIntoAMessage) {
     serve(options_at(socket()));
     const auto client = connect(socket());
-    const std::vector<Box3f> crowd(test::scaled(8000, 2));
+    const std::vector<Box3f> crowd(scaled(8000, 2));
     for (const char* const done : {"1", "2"}) {
         std::uint64_t pairs = 0;
         const PairSink count = [&](std::span<const Pair> some) { pairs += some.size(); };
-        (void)client->stream_pairs({std::span(crowd), {}}, count, {.order = Order::octal});
+        (void)client->stream_pairs({crowd}, count, {.order = Order::octal});
         EXPECT_EQ(pairs, crowd.size() * (crowd.size() - 1) / 2);
         EXPECT_TRUE(comes(std::string("octopair_jobs_ended_total{outcome=\"done\"} ") + done));
         EXPECT_TRUE(comes("octopair_jobs_ended_total{outcome=\"cancelled\"} 1"));
     }
-    EXPECT_EQ(client->count_pairs({std::span(crowd), {}}), crowd.size() * (crowd.size() - 1) / 2);
+    EXPECT_EQ(client->count_pairs({crowd}), crowd.size() * (crowd.size() - 1) / 2);
 }
 
 TEST_F(Metrics, CountByClient) {
@@ -78,9 +78,8 @@ TEST_F(Metrics, CountByClient) {
     EXPECT_TRUE(comes("octopair_client_jobs_total{client=\"other\"} 10")) << "labels are bounded";
     EXPECT_TRUE(comes("octopair_queue_seconds_count 60"));
     const std::vector<Box3f> many(11);
-    (void)error_of(ErrorCode::resource_limit, [&] {
-        (void)connect(socket(), {.token = "0123456789abcde-0"})->count_pairs({std::span(many), {}});
-    });
+    (void)error_of(ErrorCode::resource_limit,
+                   [&] { (void)connect(socket(), {.token = "0123456789abcde-0"})->count_pairs({many}); });
     EXPECT_TRUE(comes("octopair_client_refusals_total{client=\"token:client0\"} 1"));
 }
 
@@ -109,7 +108,7 @@ TEST_F(Metrics, AreNotBlockedByIdleConnections) {
     for (int i = 0; i < 8; ++i) idle.push_back(connect_to_metrics(log_.str()));
     EXPECT_TRUE(idle.back().open());
     const auto begun = std::chrono::steady_clock::now();
-    EXPECT_NE(page().find("octopair_memory_bytes"), std::string::npos);
+    EXPECT_TRUE(has_text(page(), "octopair_memory_bytes"));
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << "an idle connection lasts 30 s";
 }
 

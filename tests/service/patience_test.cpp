@@ -18,7 +18,6 @@ namespace octopair::test {
 namespace {
 
 using std::chrono::milliseconds;
-using test::Served;
 
 /// A server that listens and never answers.
 class Mute {
@@ -36,18 +35,18 @@ private:
 };
 
 TEST(ServedPatience, EndsWithoutAServer) {
-    const test::TemporaryDirectory folder;
+    const TemporaryDirectory folder;
     for (const std::string& address : {"unix:" + folder.file("nobody"), std::string("127.0.0.1:1")}) {
         const auto call = [&] { (void)connect(address, {.patience = milliseconds(300)}); };
-        EXPECT_NE(test::error_of(ErrorCode::engine_failed, call).find(address), std::string::npos);
+        expect_error(ErrorCode::engine_failed, address, call);
     }
 }
 
 TEST(ServedPatience, EndsAtAServerThatNeverAnswers) {
-    const test::TemporaryDirectory folder;
+    const TemporaryDirectory folder;
     const Mute mute(folder.file("mute"));
     const auto call = [&] { (void)connect("unix:" + folder.file("mute"), {.patience = milliseconds(2500)}); };
-    EXPECT_EQ(test::code_of(call), ErrorCode::engine_failed);
+    EXPECT_EQ(code_of(call), ErrorCode::engine_failed);
 }
 
 TEST(ServedPatience, WaitsForAServerThatComesLater) {
@@ -57,29 +56,29 @@ TEST(ServedPatience, WaitsForAServerThatComesLater) {
         std::this_thread::sleep_for(milliseconds(400));
         served.start();
     });
-    test::check_serves(served.address());
+    check_serves(served.address());
 }
 
 TEST(ServedPatience, EndsWhenAServerStaysAway) {
-    test::Gate gate;
+    Gate gate;
     Served served([&](service::ServerOptions& options) {
-        options.engine = test::gated_engines(gate);
+        options.engine = gated_engines(gate);
         options.engine_widths.instant = 0;  // instant jobs would block gRPC's threads at the gate
     });
     const auto engine = served.client(milliseconds(500));
-    Job job = engine->submit(test::touching_boxes);
+    Job job = engine->submit(touching_boxes);
     ASSERT_TRUE(gate.wait_for(1));
     served.stop();
-    EXPECT_EQ(test::code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
+    EXPECT_EQ(code_of([&] { (void)job.summary(); }), ErrorCode::engine_failed);
     served.start();
     gate.open();
     // With a patience of 500 ms, a call may end again before the server answers.
     const auto answers = [&] {
         std::uint64_t pairs = 0;
-        (void)test::code_of([&] { pairs = engine->count_pairs(test::objects_of(test::touching_boxes)); });
+        (void)code_of([&] { pairs = engine->count_pairs(objects_of(touching_boxes)); });
         return pairs == 1;
     };
-    EXPECT_TRUE(test::comes_true(answers, std::chrono::minutes(1)));
+    EXPECT_TRUE(comes_true(answers, std::chrono::minutes(1)));
 }
 
 /// For example a proxy whose server is gone: it takes calls, and ends each with UNAVAILABLE.
@@ -100,7 +99,7 @@ TEST(ServedPatience, EndsAtAServerThatRefusesEachCall) {
     ASSERT_TRUE(comes_true(is_refused, std::chrono::seconds(20)));
     const std::vector<Box3f> many = make_boxes("uniform", 100'000, 1);  // a stream of messages
     const auto begun = std::chrono::steady_clock::now();
-    EXPECT_EQ(code_of([&] { (void)other->count_pairs({std::span(many), {}}); }), ErrorCode::engine_failed);
+    EXPECT_EQ(code_of([&] { (void)other->count_pairs({many}); }), ErrorCode::engine_failed);
     EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20));
     gate.open();
 }
@@ -117,7 +116,7 @@ TEST(ServedPatience, CanBeStopped) {
     Served served;
     const auto engine = served.client(std::chrono::hours(10));
     served.stop();
-    Job job = engine->submit(test::touching_boxes);
+    Job job = engine->submit(touching_boxes);
     std::this_thread::sleep_for(milliseconds(100));
     job.cancel();
     ASSERT_TRUE(job.wait_for(std::chrono::minutes(1)));
@@ -147,13 +146,13 @@ TEST(ServedPatience, WrongAddressesAreRefused) {
                                 "2130706433:80",
                                 "127.0.0.1.:80"}) {
         SCOPED_TRACE(address);
-        EXPECT_EQ(test::code_of([&] { (void)connect(address); }), ErrorCode::usage);
+        EXPECT_EQ(code_of([&] { (void)connect(address); }), ErrorCode::usage);
     }
     using namespace std::string_literals;
     for (const std::string& address : {"unix:a\0b"s, "[::1\0]:80"s, "::1\0:80"s})
-        EXPECT_EQ(test::code_of([&] { (void)connect(address); }), ErrorCode::usage);
+        EXPECT_EQ(code_of([&] { (void)connect(address); }), ErrorCode::usage);
     EXPECT_EQ(
-        test::error_of(ErrorCode::usage, [] { (void)connect("local\x1B[1m:80"); }),
+        error_of(ErrorCode::usage, [] { (void)connect("local\x1B[1m:80"); }),
         "address 'local?[1m:80' has a character in its host that no host name can have; give unix:PATH or HOST:PORT");
 }
 

@@ -15,24 +15,21 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
-using test::comes_true;
-using test::RawSocket;
-using test::ServerProgram;
 
 TEST(ServerProgramLimits, ConnectionsFitTheDescriptors) {
-    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     ServerProgram server({.before = "ulimit -n 296;"});
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     std::vector<RawSocket> held;
     for (int i = 0; i < 100; ++i) held.emplace_back(server.address());
-    EXPECT_NE(held.back().receive(minutes(1)).find("at most 100 connections"), std::string::npos);
-    EXPECT_EQ(engine->count_pairs(test::objects_of(test::touching_boxes)), 1u);
+    EXPECT_TRUE(has_text(held.back().receive(minutes(1)), "at most 100 connections"));
+    EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u);
 }
 
 TEST(ServerProgramLimits, OfDescriptors) {
-    if (test::sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
+    if (sanitized) GTEST_SKIP() << "the sanitizer opens descriptors to check types";
     ServerProgram server({.before = "ulimit -n 60;"});
-    test::check_serves(server.address());
+    check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = minutes(1)});
     std::vector<RawSocket> held;
     std::optional<ErrorCode> code;
@@ -40,51 +37,51 @@ TEST(ServerProgramLimits, OfDescriptors) {
     for (int attempt = 0; attempt < 3 && code != ErrorCode::resource_limit; ++attempt) {
         held.clear();
         for (int i = 0; i < 80; ++i) held.emplace_back(server.address());
-        EXPECT_NE(held.back().receive(minutes(1)).find("no more descriptors"), std::string::npos);
-        code = test::code_of([&] { (void)connect(server.address(), {.connect_timeout = seconds(2)}); });
+        EXPECT_TRUE(has_text(held.back().receive(minutes(1)), "no more descriptors"));
+        code = code_of([&] { (void)connect(server.address(), {.connect_timeout = seconds(2)}); });
     }
     EXPECT_EQ(code, ErrorCode::resource_limit);
-    EXPECT_EQ(engine->count_pairs(test::objects_of(test::touching_boxes)), 1u);
+    EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u);
     EXPECT_TRUE(server.lives());
     held.clear();
-    test::check_serves(server.address());
+    check_serves(server.address());
 }
 
 TEST(ServerProgramLimits, OfAddressSpace) {
-    if (test::sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    if (sanitized) GTEST_SKIP() << "sanitizers map terabytes";
     // With a malloc arena for every thread, gRPC itself would run out of memory.
     ServerProgram server({.arguments = "--engine local --threads 1", .before = "export MALLOC_ARENA_MAX=2;"});
-    test::check_serves(server.address());
+    check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});
     server.limit_memory(std::uint64_t(300) << 20);
     const std::vector<Box3f> many(20'000'000), crowd(20'000);  // 480 MB of boxes; 1.6 GB of pairs
-    const auto too_many = [&] { (void)engine->count_pairs({std::span(many), {}}, {.limit = 1}); };
+    const auto too_many = [&] { (void)engine->count_pairs({many}, {.limit = 1}); };
     PairList list;
-    const auto too_crowded = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list); };
+    const auto too_crowded = [&] { (void)engine->find_pairs({crowd}, list); };
     for (int i = 0; i < 2; ++i) {
-        EXPECT_EQ(test::code_of(too_many), ErrorCode::resource_limit);
-        EXPECT_EQ(test::code_of(too_crowded), ErrorCode::resource_limit);
+        EXPECT_EQ(code_of(too_many), ErrorCode::resource_limit);
+        EXPECT_EQ(code_of(too_crowded), ErrorCode::resource_limit);
         EXPECT_TRUE(server.lives()) << server.log();
-        EXPECT_EQ(engine->count_pairs(test::objects_of(test::touching_boxes)), 1u);
+        EXPECT_EQ(engine->count_pairs(objects_of(touching_boxes)), 1u);
     }
 }
 
 TEST(ServerProgramLimits, OfPairsThatArePutInOrder) {
-    if (test::sanitized) GTEST_SKIP() << "the memory of the sanitizer would count";
+    if (sanitized) GTEST_SKIP() << "the memory of the sanitizer would count";
     ServerProgram server({.arguments = "--engine local --threads 1 --max-memory 64M"});
-    test::check_serves(server.address());
+    check_serves(server.address());
     const auto engine = connect(server.address(), {.patience = milliseconds(300)});
     const std::vector<Box3f> crowd(12'000);  // 576 MB of pairs
     PairList list;
-    const auto call = [&] { (void)engine->find_pairs({std::span(crowd), {}}, list, {Order::ascending}); };
-    EXPECT_EQ(test::code_of(call), ErrorCode::resource_limit);
+    const auto call = [&] { (void)engine->find_pairs({crowd}, list, {Order::ascending}); };
+    EXPECT_EQ(code_of(call), ErrorCode::resource_limit);
     EXPECT_LT(server.memory(), std::uint64_t(300) << 20);
 }
 
 TEST(ServerProgramLimits, EndsWhenAskedTo) {
     for (const int signal : {SIGTERM, SIGINT}) {
         ServerProgram server;
-        test::check_serves(server.address());
+        check_serves(server.address());
         server.signal(signal);
         EXPECT_EQ(server.wait(), 0) << server.log();
     }

@@ -112,7 +112,7 @@ std::string bytes_of_boxes(std::uint64_t objects) {
     std::vector<Box3f> boxes;
     boxes.reserve(objects);
     for (std::uint64_t i = 0; i < objects; ++i) boxes.push_back({{2 * float(i), 0, 0}, {2 * float(i) + 1, 1, 1}});
-    return test::bytes_of(boxes);
+    return bytes_of(boxes);
 }
 
 grpc::ByteBuffer buffer_of(const std::string& bytes) {

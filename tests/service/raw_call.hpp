@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "octopair/objects.hpp"
 #include "service/protocol/octopair.pb.h"

@@ -116,7 +116,7 @@ TEST_F(ServeOptions, CommandLineComesFirst) {
 TEST_F(ServeOptions, ExampleConfigurationIsAccepted) {
     const Outcome outcome = served("--config " OCTOPAIR_SOURCE "/packaging/serve.toml --listen unix:socket");
     EXPECT_EQ(outcome.status, 0) << content("log");
-    EXPECT_NE(content("log").find("started"), std::string::npos);
+    EXPECT_TRUE(has_text(content("log"), "started"));
 }
 
 TEST_F(ServeOptions, BytesHaveSuffixes) {

@@ -42,20 +42,14 @@ std::unique_ptr<Engine> Served::client(std::chrono::milliseconds patience) const
 void check_serves(const std::string& address) {
     const std::vector<Box3f> boxes = {{{0, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {2, 2, 2}}, {{5, 5, 5}, {6, 6, 6}}};
     PairList pairs;
-    (void)connect(address, {.patience = std::chrono::seconds(60)})->find_pairs({std::span(boxes), {}}, pairs);
+    (void)connect(address, {.patience = std::chrono::seconds(60)})->find_pairs({boxes}, pairs);
     EXPECT_EQ(pairs.to_vector(), (std::vector<Pair>{{0, 1}}));
 }
 
 void expect_refused(const std::string& limit, std::uint64_t allowed, const std::function<void()>& call) {
-    try {
-        call();
-        ADD_FAILURE() << "the call was not refused beyond the limit " << limit;
-    } catch (const Error& error) {
-        const std::string words = error.what();
-        EXPECT_EQ(int(error.code()), int(ErrorCode::resource_limit)) << words;
-        EXPECT_NE(words.find(limit), std::string::npos) << words;
-        EXPECT_NE(words.find(std::to_string(allowed)), std::string::npos) << words;
-    }
+    const std::string words = error_of(ErrorCode::resource_limit, call);
+    EXPECT_TRUE(has_text(words, limit));
+    EXPECT_TRUE(has_text(words, std::to_string(allowed)));
 }
 
 }  // namespace octopair::test

@@ -32,7 +32,7 @@ public:
     std::unique_ptr<Engine> client(std::chrono::milliseconds patience = std::chrono::seconds(60)) const;
 
 private:
-    test::TemporaryDirectory folder_;
+    TemporaryDirectory folder_;
     service::ServerOptions options_;
     std::string address_;
     std::unique_ptr<service::Server> server_;

@@ -56,10 +56,9 @@ TEST_F(ServerChoice, AHangUpReadsTheTokensAgain) {
         "\"$P\" $D --quiet --count-only --token-file new");
     const std::string refused = "octopair: unix:socket: the server does not accept this token\n";
     EXPECT_EQ(outcome.out, refused + "1\n" + refused + "1\n");
-    EXPECT_NE(content("log").find(
-                  "tokens, roles and certificates: cannot read them again: tokens: line 1: a line must be NAME TOKEN"),
-              std::string::npos)
-        << content("log");
+    EXPECT_TRUE(
+        has_text(content("log"),
+                 "tokens, roles and certificates: cannot read them again: tokens: line 1: a line must be NAME TOKEN"));
 }
 
 TEST_F(ServerChoice, TheLogWarnsOfClientsWithoutAToken) {
@@ -67,9 +66,8 @@ TEST_F(ServerChoice, TheLogWarnsOfClientsWithoutAToken) {
         "warns() { for i in $(seq 600); do grep -qs \"$1\" log && return; sleep 0.05; done; }\n"
         "printf 'token:anna owner\\ntoken:ana none\\n' >roles; kill -HUP $child; warns 'client token:ana$'");
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(content("log").find("warning roles: no token has the name of the client token:ana"), std::string::npos)
-        << content("log");
-    EXPECT_EQ(content("log").find("client token:anna"), std::string::npos) << content("log");
+    EXPECT_TRUE(has_text(content("log"), "warning roles: no token has the name of the client token:ana"));
+    EXPECT_FALSE(has_text(content("log"), "client token:anna"));
 }
 
 TEST_F(ServerChoice, AHangUpKeepsTheRolesIfTheFileIsNotUnderstood) {
@@ -81,10 +79,9 @@ TEST_F(ServerChoice, AHangUpKeepsTheRolesIfTheFileIsNotUnderstood) {
         "\"$P\" $D --quiet --count-only --token-file token 2>&1");
     const std::string refused = "octopair: unix:socket: the client has no access any more\n";
     EXPECT_EQ(outcome.out, refused + refused);
-    EXPECT_NE(content("log").find("tokens, roles and certificates: cannot read them again: roles: line 1: a quote is "
-                                  "not closed; those read before stay in use"),
-              std::string::npos)
-        << content("log");
+    EXPECT_TRUE(has_text(content("log"),
+                         "tokens, roles and certificates: cannot read them again: roles: line 1: a quote is "
+                         "not closed; those read before stay in use"));
 }
 
 TEST_F(ServerChoice, TokenFilesOthersMayReadAreRefused) {
@@ -97,7 +94,7 @@ TEST_F(ServerChoice, TokenFilesOthersMayReadAreRefused) {
 TEST_F(ServerChoice, SummaryAndStatsNameTheServer) {
     const Outcome outcome = with_server("\"$P\" $D --token-file token --stats stats.json");
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.err.find(" objects/s on server unix:socket\n"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(has_text(outcome.err, " objects/s on server unix:socket\n"));
     const auto stats = nlohmann::json::parse(content("stats.json"));
     EXPECT_EQ(stats["engine"], "server");
     EXPECT_EQ(stats["server"], "unix:socket");
@@ -116,7 +113,7 @@ TEST_F(ServerChoice, WhatDoesNotFitIsRefused) {
     const Outcome away = run("detect a.npy --quiet --engine unix:none --patience 0.2");
     EXPECT_EQ(away.status, 6);
     EXPECT_EQ(away.err.find("octopair: unix:none: no server answers"), 0u) << away.err;
-    EXPECT_NE(run("info").out.find(", server (ADDRESS)\n"), std::string::npos);
+    EXPECT_TRUE(has_text(run("info").out, ", server (ADDRESS)\n"));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "io/temporary.hpp"
 
@@ -37,7 +36,7 @@ public:
     /// Sends SIGKILL, and restarts the server on the same socket.
     void kill_and_restart();
     /// Returns the output of all runs of the server.
-    std::string log() const { return test::read_file(folder_.file("log")); }
+    std::string log() const { return read_file(folder_.file("log")); }
     /// Returns the resident memory in bytes, 0 if the server does not run.
     std::uint64_t memory() const;
     /// Limits further memory mappings to `more` bytes.
@@ -48,7 +47,7 @@ public:
 private:
     void start();
 
-    test::TemporaryDirectory folder_;
+    TemporaryDirectory folder_;
     Setting setting_;
     pid_t id_ = 0;
 };

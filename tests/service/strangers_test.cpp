@@ -30,9 +30,7 @@ protected:
         };
     }
     static ClientOptions anna() {
-        ClientOptions options;
-        options.token = "0123456789abcdef";
-        options.token_in_clear = true;
+        ClientOptions options{.token = "0123456789abcdef", .token_in_clear = true};
         return options;
     }
 

@@ -6,12 +6,14 @@
 //         OCTOPAIR_TEST_SMALL_SCENES and OCTOPAIR_TEST_LARGE_SCENES=<number> set the numbers for exactness tests.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "octopair/octopair.hpp"
+#include "support/calls.hpp"
 
 namespace octopair::test {
 
@@ -39,6 +41,26 @@ struct Case {
 
 /// Makes a case of 0 to 3,000 objects, mostly few. Kinds with many pairs get fewer objects.
 Case make_case(const std::string& kind, std::uint64_t seed);
+
+/// A call with the objects of a case, by any engine.
+struct AnyCall {
+    const Case& asked;
+    Order order;
+    bool streamed;
+    bool limited;
+    bool verify = false;
+
+    Options options() const {
+        Options options{.order = order, .margin = asked.margin, .buffer_bytes = asked.buffer_bytes, .verify = verify};
+        if (limited) options.limit = asked.limit;
+        return options;
+    }
+    std::vector<Pair> made_by(Engine& engine) const {
+        return streamed ? streamed_pairs(engine, asked.input(), options())
+                        : listed_pairs(engine, asked.input(), options());
+    }
+    std::uint64_t counted_by(Engine& engine) const { return engine.count_pairs(asked.input(), options()); }
+};
 
 /// Returns the seed of the i-th case of a kind, or OCTOPAIR_TEST_SEED.
 std::uint64_t case_seed(const std::string& kind, std::uint64_t i);

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cfloat>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "samples/random.hpp"

@@ -5,13 +5,13 @@
 
 #include <atomic>
 #include <chrono>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "octopair/engine.hpp"
 #include "octopair/error.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 
@@ -25,22 +25,16 @@ inline std::vector<Box3f> boxes_in_a_row(std::size_t count) {
 /// Calls `call`, and expects that it throws Error{usage} about a deadlock.
 template <typename Call>
 void expect_deadlock_refused(const Call& call) {
-    try {
-        call();
-        ADD_FAILURE() << "a call within its own callback succeeded";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::usage);
-        EXPECT_NE(std::string(error.what()).find("deadlock"), std::string::npos) << error.what();
-    }
+    expect_error(ErrorCode::usage, "deadlock", [&] { call(); });
 }
 
 /// Tries all calls of an engine that wait, in a callback of this engine.
 inline void expect_calls_refused(Engine& engine) {
     const std::vector<Box3f> boxes = boxes_in_a_row(3);
     PairList pairs;
-    expect_deadlock_refused([&] { (void)engine.find_pairs(Objects{boxes, {}}, pairs); });
-    expect_deadlock_refused([&] { (void)engine.count_pairs(Objects{boxes, {}}); });
-    expect_deadlock_refused([&] { (void)engine.stream_pairs(Objects{boxes, {}}, [](std::span<const Pair>) {}); });
+    expect_deadlock_refused([&] { (void)engine.find_pairs({boxes}, pairs); });
+    expect_deadlock_refused([&] { (void)engine.count_pairs({boxes}); });
+    expect_deadlock_refused([&] { (void)engine.stream_pairs({boxes}, [](std::span<const Pair>) {}); });
 }
 
 /// Checks all callbacks of calls and jobs. `jobs`: whether the engine has jobs.
@@ -51,7 +45,7 @@ inline void expect_reentry_is_refused(Engine& engine, bool jobs = true) {
     std::atomic<int> sinks = 0, reports = 0;
     const auto try_all = [&] {
         expect_calls_refused(engine);
-        EXPECT_EQ(other->count_pairs(Objects{few, {}}), 2u);
+        EXPECT_EQ(other->count_pairs({few}), 2u);
     };
     const PairSink sink = [&](std::span<const Pair>) {
         if (sinks++ > 0) return;
@@ -66,7 +60,7 @@ inline void expect_reentry_is_refused(Engine& engine, bool jobs = true) {
     options.progress = [&](double) {
         if (reports++ == 0) try_all();
     };
-    (void)engine.stream_pairs(Objects{boxes, {}}, sink, options);
+    (void)engine.stream_pairs({boxes}, sink, options);
     EXPECT_GT(sinks, 0);
     EXPECT_GT(reports, 0);
     if (jobs) {
@@ -75,7 +69,7 @@ inline void expect_reentry_is_refused(Engine& engine, bool jobs = true) {
         EXPECT_GT(sinks, 0);
         EXPECT_GT(reports, 0);
     }
-    EXPECT_EQ(engine.count_pairs(Objects{few, {}}), 2u);  // the engine is usable
+    EXPECT_EQ(engine.count_pairs({few}), 2u);  // the engine is usable
 }
 
 }  // namespace octopair::test

@@ -96,12 +96,12 @@ double margin_near_distance(const Scene& scene, double scale, RandomStream& rand
 class Certificates : public ::testing::TestWithParam<int> {};
 
 TEST_P(Certificates, AgreeWithTheNarrowPhase) {
-    const std::uint64_t pairs = test::case_count(test::scaled(160, 10));
+    const std::uint64_t pairs = case_count(scaled(160, 10));
     std::array<int, collision_classes> found = {};
     int dropped = 0;
     for (std::uint64_t i = 0; i < pairs; ++i) {
         for (int second = 0; second < kinds; ++second) {
-            const std::uint64_t seed = test::case_seed("certificates", i);
+            const std::uint64_t seed = case_seed("certificates", i);
             SCOPED_TRACE("kinds " + std::to_string(GetParam()) + " and " + std::to_string(second) +
                          ", OCTOPAIR_TEST_SEED=" + std::to_string(seed));
             RandomStream random(seed, std::uint64_t(GetParam() * kinds + second));

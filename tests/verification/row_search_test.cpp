@@ -4,20 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "baselines/baselines.hpp"
 #include "support/cases.hpp"
 #include "support/compare.hpp"
+#include "support/errors.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
-
-using test::Case;
-using test::same_pairs;
 
 std::vector<Pair> found_by(const RowSearch& search) {
     std::vector<Pair> pairs;
@@ -37,7 +34,7 @@ void expect_judged(const RowSearch& search, const std::vector<Pair>& pairs) {
             if (search.is_pair(a, b)) judged.push_back({a, b});
         }
     }
-    EXPECT_TRUE(test::same_bytes(judged, pairs));
+    EXPECT_TRUE(same_bytes(judged, pairs));
 }
 
 void expect_right(const SearchedObjects& objects, unsigned threads) {
@@ -48,15 +45,15 @@ void expect_right(const SearchedObjects& objects, unsigned threads) {
                                   : baselines::oracle_pairs(objects.first, objects.margin);
     const std::vector<Pair> found = found_by(search);
     EXPECT_TRUE(same_pairs(found, expected, {objects.first, objects.second}));
-    EXPECT_TRUE(test::same_bytes(found, expected));
+    EXPECT_TRUE(same_bytes(found, expected));
     if (objects.first.size() <= 200) expect_judged(search, expected);
 }
 
 class RowSearchOfKind : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RowSearchOfKind, FindsWhatBruteForceFinds) {
-    for (std::uint64_t i = 0; i < test::case_count(test::scaled(60, 5)); ++i) {
-        const Case asked = test::make_case(GetParam(), test::case_seed(GetParam(), i));
+    for (std::uint64_t i = 0; i < case_count(scaled(60, 5)); ++i) {
+        const Case asked = make_case(GetParam(), case_seed(GetParam(), i));
         const Objects first = asked.first.view();
         const Objects second = asked.second ? asked.second->view() : Objects{};
         expect_right({first, asked.second ? &second : nullptr, asked.margin}, asked.threads[i % 3]);
@@ -64,7 +61,7 @@ TEST_P(RowSearchOfKind, FindsWhatBruteForceFinds) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, RowSearchOfKind, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, RowSearchOfKind, ::testing::ValuesIn(all_kind_names()), param_name);
 
 /// Returns a box for each two numbers low <= high: [low, high] on x and y, and [-high, -low] on z.
 template <typename Real>
@@ -88,7 +85,7 @@ TYPED_TEST(RowSearchAtTheEnds, DenormalAndLargestNumbers) {
     const TypeParam least = Limits::denorm_min(), most = Limits::max();
     const auto boxes = boxes_among<TypeParam>(
         {-most, -1, -2 * least, -least, TypeParam(-0.0), 0, least, 2 * least, 3 * least, Limits::min(), 1, most});
-    const Objects objects{std::span<const Box<TypeParam>>(boxes), {}};
+    const Objects objects{boxes, {}};
     const double largest = std::numeric_limits<double>::max();
     for (const double margin : {0.0, double(least), 2.5 * double(least), 1.0, double(most), largest}) {
         expect_right({objects, nullptr, margin}, 2);
@@ -103,14 +100,14 @@ TYPED_TEST(RowSearchAtTheEnds, DenormalAndLargestNumbers) {
 TEST(RowSearch, NoObjects) {
     expect_right({{}, nullptr, 0}, 2);
     const std::vector<Box3f> one = {{{0, 0, 0}, {1, 1, 1}}};
-    const Objects none, some{std::span<const Box3f>(one), {}};
+    const Objects none, some{one, {}};
     expect_right({some, nullptr, 0}, 2);
     expect_right({none, &some, 0}, 2);
     expect_right({some, &none, 0}, 2);
 }
 
 TEST(RowSearch, AnyNumberOfObjects) {
-    const std::vector<Box3f> boxes = test::make_boxes("uniform", 600, 1);
+    const std::vector<Box3f> boxes = make_boxes("uniform", 600, 1);
     for (std::size_t n = 1; n <= boxes.size(); n += 1 + n / 40) {
         expect_right({{std::span(boxes).first(n), {}}, nullptr, 0.01}, unsigned(1 + n % 4));
         ASSERT_FALSE(HasFailure()) << n;
@@ -118,16 +115,11 @@ TEST(RowSearch, AnyNumberOfObjects) {
 }
 
 TEST(RowSearch, StopsWhenAsked) {
-    const std::vector<Box3f> boxes = test::make_boxes("uniform", 5000, 1);
-    std::stop_source stop;
-    stop.request_stop();
+    const std::vector<Box3f> boxes = make_boxes("uniform", 5000, 1);
     Team team(1);
-    try {
-        const RowSearch search({{std::span<const Box3f>(boxes), {}}, nullptr, 0}, team, stop.get_token());
-        FAIL() << "RowSearch ignored the stop request";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled);
-    }
+    (void)error_of(ErrorCode::cancelled, [&] {
+        const RowSearch search({{boxes, {}}, nullptr, 0}, team, requested_stop());
+    });
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "octopair/error.hpp"
 #include "pipeline/exact_scene.hpp"
 #include "samples/meshes.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
@@ -48,13 +49,7 @@ protected:
                           .threads = 2});
         for (const Collision& one : collisions) check.take(std::span(&one.pair, 1), std::span(&one.finding, 1));
         check.exclude(excluded_);
-        try {
-            not_checked_ = check.finish().not_checked;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::engine_failed);
-            return error.what();
-        }
-        return {};
+        return error_if_any(ErrorCode::engine_failed, [&] { not_checked_ = check.finish().not_checked; });
     }
 
     /// Returns the message for the collisions with one change.
@@ -96,7 +91,7 @@ TEST_F(Stages, EveryWrongClassIsNamed) {
         const bool apart = one.finding.collision_class == CollisionClass::clearance;
         const auto wrong = apart ? CollisionClass::penetrating : CollisionClass::clearance;
         const std::string text = complaint_with(one.pair, [&](Finding& finding) { finding.collision_class = wrong; });
-        EXPECT_NE(text.find(std::to_string(one.pair.a) + ", " + std::to_string(one.pair.b)), std::string::npos)
+        EXPECT_TRUE(has_text(text, std::to_string(one.pair.a) + ", " + std::to_string(one.pair.b)))
             << one.pair.a << ' ' << one.pair.b << ": " << text;
     }
     for (const Pair pair : {Pair{0, 2}, Pair{5, 6}}) {
@@ -192,12 +187,12 @@ TEST_F(Stages, CollisionsOfMovingObjectsAreNotJudged) {
 TEST_F(Stages, AStrayOrRepeatedCollisionIsNamed) {
     std::vector<Collision> collisions = collisions_;
     collisions.push_back(collisions[0]);
-    EXPECT_NE(complaint(collisions).find("is twice among the collisions"), std::string::npos);
+    EXPECT_TRUE(has_text(complaint(collisions), "is twice among the collisions"));
     collisions.back().pair = {1, 11};
     EXPECT_EQ(complaint(collisions), "verification failed: pair (1, 11) is a collision, but not a pair of boxes");
     collisions.back() = {{10, 11}, {}};
     collisions.back().finding.collision_class = CollisionClass::penetrating;
-    EXPECT_NE(complaint(collisions).find("pair (10, 11): the objects do not meet"), std::string::npos);
+    EXPECT_TRUE(has_text(complaint(collisions), "pair (10, 11): the objects do not meet"));
 }
 
 TEST_F(Stages, ExcludedPairsMustBeAbsent) {

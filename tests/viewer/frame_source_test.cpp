@@ -1,12 +1,11 @@
 // FrameSource on a scene in memory.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <map>
 #include <set>
 #include <thread>
 
 #include "octopair/error.hpp"
+#include "support/errors.hpp"
 #include "viewer/fake_finder.hpp"
 #include "viewer/scene/frame_source.hpp"
 #include "viewer/shown_frames.hpp"
@@ -210,7 +209,7 @@ TEST(FrameSource, OfALargeScene) {
     EXPECT_EQ(view["shown"], 40);
     EXPECT_EQ(view["has"]["near"], true);
     ASSERT_EQ(view["notices"].size(), 1u);
-    EXPECT_NE(view["notices"][0].get<std::string>().find("260 of 300"), std::string::npos);
+    EXPECT_TRUE(has_text(view["notices"][0].get<std::string>(), "260 of 300"));
     const auto shown = array_of<std::uint32_t>(body_of(source, "shown.u32"));
     EXPECT_EQ(shown.size(), 40u);
     EXPECT_EQ(body_of(source, "frame/0.f32").size(), 40u * 24);

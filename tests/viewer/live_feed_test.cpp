@@ -1,7 +1,6 @@
 // LiveFeed: pages that apply whole frames and differences have the true boxes and pairs after every frame.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 #include <thread>
 

@@ -1,8 +1,6 @@
 // ShownObjects: the choice and the order of the rows of the overview.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numeric>
 #include <set>
 
 #include "viewer/scene/shown_objects.hpp"

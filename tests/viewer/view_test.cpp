@@ -15,6 +15,7 @@
 #include "octopair/error.hpp"
 #include "octopair/scene.hpp"
 #include "octopair/view.hpp"
+#include "support/errors.hpp"
 #include "viewer/live_page.hpp"
 #include "viewer/page_client.hpp"
 #include "viewer/shown_frames.hpp"
@@ -34,7 +35,7 @@ public:
           scene_({.threads = 1, .precision = Precision::float64}),
           boxes_(random_boxes(random_, count)),
           ids_(count) {
-        scene_.add({std::span<const Box3d>(boxes_)}, ids_);
+        scene_.add({boxes_}, ids_);
     }
 
     const StepResult& step() {
@@ -351,12 +352,7 @@ TEST(View, StepsOfAnotherThread) {
 TEST(View, RefusesInvalidOptions) {
     MovingScene scene(1);
     const auto refused = [&](const ViewOptions& options) {
-        try {
-            const View view(scene.scene(), options);
-        } catch (const Error& error) {
-            return error.code();
-        }
-        return ErrorCode::cancelled;
+        return code_of([&] { const View view(scene.scene(), options); });
     };
     EXPECT_EQ(refused({.up = "x"}), ErrorCode::usage);
     EXPECT_EQ(refused({.up = ""}), ErrorCode::usage);
@@ -378,12 +374,9 @@ TEST(View, APortThatIsTaken) {
     MovingScene scene(1);
     const View view(scene.scene());
     const std::string endpoint = endpoint_of(view.address());
-    try {
+    (void)error_of(ErrorCode::io_failed, [&] {
         const View other(scene.scene(), {.port = std::uint16_t(std::stoul(endpoint.substr(endpoint.rfind(':') + 1)))});
-        ADD_FAILURE() << "two servers at one port";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::io_failed);
-    }
+    });
 }
 
 TEST(View, MessagesThatAreNotRequestsEndTheConnection) {

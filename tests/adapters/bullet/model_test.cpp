@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <random>
 #include <set>
 
@@ -209,10 +208,10 @@ private:
 };
 
 TEST(BulletModel, HasThePairsAndAnswersOfAllPairsTested) {
-    const std::uint64_t histories = test::case_count(test::scaled(300, 10));
+    const std::uint64_t histories = case_count(scaled(300, 10));
     int failures = 0;
     for (std::uint64_t i = 0; i < histories && !HasFailure(); ++i) {
-        const std::uint64_t seed = test::case_seed("bullet", i);
+        const std::uint64_t seed = case_seed("bullet", i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         History history(seed);
         history.run(30);

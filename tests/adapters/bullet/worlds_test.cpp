@@ -215,10 +215,10 @@ TEST(Worlds, RagdollsThatFallOnEachOther) {
 TEST(Worlds, TwentyThousandBoxesThatFall) {
     World world;
     world.without_contacts();
-    const int boxes = test::sanitized ? 500 : 20'000;
+    const int boxes = sanitized ? 500 : 20'000;
     let_fall(world, boxes);
-    world.run(test::sanitized ? 40 : 300);
-    EXPECT_GT(world.broadphase.pairs, std::size_t(100 * boxes) / (test::sanitized ? 10 : 1));
+    world.run(sanitized ? 40 : 300);
+    EXPECT_GT(world.broadphase.pairs, std::size_t(100 * boxes) / (sanitized ? 10 : 1));
 }
 
 TEST(Worlds, HaveTheSameOrderForAnyNumberOfThreads) {

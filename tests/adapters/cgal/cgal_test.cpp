@@ -12,6 +12,7 @@
 #include "adapters/cgal/calls.hpp"
 #include "octopair/cgal/box_intersection_d.hpp"
 #include "support/cases.hpp"
+#include "support/errors.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
@@ -72,10 +73,10 @@ private:
 TEST(CgalAdapter, FindsThePairsOfCgal) {
     const auto of_cgal = with_cgal::calls(), of_octopair = with_octopair::calls();
     ASSERT_EQ(of_cgal.size(), of_octopair.size());
-    const std::uint64_t seeds = test::case_count(test::scaled(1000, 20));
+    const std::uint64_t seeds = case_count(scaled(1000, 20));
     std::size_t pairs = 0;
     for (std::uint64_t i = 0; i < seeds; ++i) {
-        const std::uint64_t seed = test::case_seed("cgal", i);
+        const std::uint64_t seed = case_seed("cgal", i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
         const Question question = RandomBoxes(seed).question();
         for (std::size_t call = 0; call < of_cgal.size(); ++call) {
@@ -112,12 +113,8 @@ TEST(CgalAdapter, NamesTheBoxThatIsNotANumber) {
     using Box = boxes::Box_d<double, 3>;
     const double lower[] = {0, 0, 0}, upper[] = {1, 1, 1}, wrong[] = {0, std::nan(""), 1};
     const std::vector<Box> all = {Box(upper, lower), Box(lower, upper), Box(lower, wrong)};
-    try {
-        cgal::box_self_intersection_d(all.begin(), all.end(), [](const Box&, const Box&) {});
-        FAIL();
-    } catch (const Error& error) {
-        EXPECT_NE(std::string(error.what()).find("box 2 "), std::string::npos) << error.what();
-    }
+    expect_error(ErrorCode::bad_input, "box 2 ",
+                 [&] { cgal::box_self_intersection_d(all.begin(), all.end(), [](const Box&, const Box&) {}); });
 }
 
 }  // namespace

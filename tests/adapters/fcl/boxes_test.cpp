@@ -1,5 +1,6 @@
 // Boxes of FCL's objects: tight, containing the geometry, unbounded, invalid.
 #include "octopair/error.hpp"
+#include "support/errors.hpp"
 #include "world.hpp"
 
 namespace octopair::test {
@@ -129,15 +130,7 @@ TYPED_TEST(FclBoxes, ThatAreInvalidAreRefused) {
     FclObject<S>* const good = world.add_box(0, 0, 0);
     FclObject<S>* const bad = world.add_box(0, 0, 0);
     BroadPhaseManager<S> manager;
-    const auto refusal = [](auto&& call) {
-        try {
-            call();
-            return std::string("accepted");
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::bad_input);
-            return std::string(error.what());
-        }
-    };
+    const auto refusal = [](auto&& call) { return error_of(ErrorCode::bad_input, call); };
     bad->setTranslation(::fcl::Vector3<S>(0, std::numeric_limits<S>::quiet_NaN(), 0));
     EXPECT_EQ(refusal([&] {
                   manager.registerObjects({good, bad});

@@ -1,5 +1,4 @@
 // Tests damaged files of the state folder: the affected job reports the file, and all other jobs are served.
-#include <fstream>
 
 #include "service/detached/detached_server.hpp"
 #include "support/compare.hpp"
@@ -16,40 +15,35 @@ protected:
         (void)client_->wait(id_, std::chrono::minutes(1));
         server_.stop();
         file_ = server_.files(ending).at(0);
-        std::string bytes = test::read_file(file_);
+        std::string bytes = read_file(file_);
         change(bytes);
-        test::write_file(file_, bytes);
+        write_file(file_, bytes);
     }
 
     /// Expects that a message for the client names the damaged file, without its folder.
     void expect_names_file(const std::string& message) const {
         const std::string name = std::filesystem::path(file_).filename().string();
         EXPECT_TRUE(message.starts_with(name + ": damaged: ")) << message;
-        EXPECT_EQ(message.find(server_.state()), std::string::npos) << message;
+        EXPECT_FALSE(has_text(message, server_.state()));
     }
 
     void expect_failed() {
         server_.start();
-        const JobStatus status = client_->wait(id_, std::chrono::minutes(1));
-        ASSERT_EQ(int(status.state), int(JobState::failed));
-        EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed));
-        expect_names_file(status.error.value().what());
+        const std::string status = failure_of(*client_, id_, ErrorCode::io_failed);
+        expect_names_file(status);
         expect_served();
         client_->release(id_);
         EXPECT_TRUE(comes_true([&] { return server_.files(".job").size() == 1; }));
     }
 
-    void expect_served() {
-        const std::string id = submit(*client_, work_);
-        EXPECT_TRUE(same_bytes(pairs_there(*client_, id), pairs_here(work_)));
-    }
+    void expect_served() { test::expect_served(*client_, work_); }
 
     void forget_result() { std::filesystem::remove(server_.files(".result").at(0)); }
 
     DetachedServer server_;
     std::unique_ptr<JobClient> client_ = server_.client();
     const std::vector<Box3f> boxes_ = make_boxes("uniform", 2000, 1);
-    const Work work_{Objects{std::span(boxes_), {}}};
+    const Work work_{Objects{boxes_}};
     std::string id_, file_;
 };
 
@@ -73,14 +67,14 @@ TEST_F(Damage, OfAJobsBeginningIsMended) {
     damage(".job", [](std::string& bytes) { bytes[40] = char(bytes[40] ^ 1); });
     forget_result();
     server_.start();
-    EXPECT_TRUE(same_bytes(pairs_there(*client_, id_), pairs_here(work_)));
+    expect_result(*client_, id_, work_);
 }
 
 TEST_F(Damage, OfAJobThatCannotBeNamed) {
     damage(".job", [](std::string& bytes) { bytes = "nothing"; });
     server_.start();
     EXPECT_TRUE(client_->list().empty());
-    EXPECT_NE(server_.log().find(file_), std::string::npos) << server_.log();
+    EXPECT_TRUE(has_text(server_.log(), file_));
     expect_served();
 }
 
@@ -99,7 +93,7 @@ TEST_F(Damage, OfPairs) {
     server_.start();
     EXPECT_EQ(int(client_->status(id_).state), int(JobState::done));
     PairList pairs;
-    const std::string words = test::error_of(ErrorCode::io_failed, [&] { client_->result(id_, pairs); });
+    const std::string words = error_of(ErrorCode::io_failed, [&] { client_->result(id_, pairs); });
     expect_names_file(words);
     EXPECT_EQ(pairs.size(), 0u);
     expect_served();

@@ -18,6 +18,8 @@
 #include "octopair/job_client.hpp"
 #include "octopair/octopair.hpp"
 #include "service/server/server.hpp"
+#include "support/calls.hpp"
+#include "support/compare.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {
@@ -38,7 +40,7 @@ public:
 
     std::string address() const { return "unix:" + folder_.file("socket"); }
     std::string state() const { return folder_.file("state"); }
-    const test::TemporaryDirectory& folder() const { return folder_; }
+    const TemporaryDirectory& folder() const { return folder_; }
     service::ServerOptions& options() { return options_; }
     std::string log() const { return words_.str(); }
     const std::ostringstream& words() const { return words_; }
@@ -56,9 +58,7 @@ public:
     }
 
     std::unique_ptr<JobClient> client(const std::string& token = {}) const {
-        ClientOptions options;
-        options.patience = std::chrono::seconds(30);
-        options.token = token;
+        ClientOptions options{.patience = std::chrono::seconds(30), .token = token};
         return std::make_unique<JobClient>(address(), options);
     }
 
@@ -73,7 +73,7 @@ public:
     }
 
 private:
-    test::TemporaryDirectory folder_;
+    TemporaryDirectory folder_;
     service::ServerOptions options_;
     std::ostringstream words_;
     std::unique_ptr<service::Server> server_;
@@ -105,10 +105,7 @@ inline std::string submit(JobClient& client, const Work& work) {
 }
 
 inline std::vector<Pair> pairs_here(const Work& work) {
-    PairList pairs;
-    const auto engine = make_local_engine(1);
-    engine->find_pairs({work.first, work.second}, pairs, work.options);
-    return pairs.to_vector();
+    return listed_pairs(*make_local_engine(1), {work.first, work.second}, work.options);
 }
 
 inline std::vector<Pair> pairs_there(JobClient& client, const std::string& id) {
@@ -117,6 +114,34 @@ inline std::vector<Pair> pairs_there(JobClient& client, const std::string& id) {
     EXPECT_EQ(summary.pairs, pairs.size());
     return pairs.to_vector();
 }
+
+/// Expects that a job ends within five minutes, and has a result.
+inline void expect_done(JobClient& client, const std::string& id) {
+    EXPECT_EQ(int(client.wait(id, std::chrono::minutes(5)).state), int(JobState::done));
+}
+
+/// Expects that a job fails within five minutes. Returns the message of its error.
+inline std::string failure_of(JobClient& client, const std::string& id, ErrorCode code) {
+    const JobStatus status = client.wait(id, std::chrono::minutes(5));
+    EXPECT_EQ(int(status.state), int(JobState::failed));
+    EXPECT_EQ(int(status.error.value().code()), int(code)) << status.error->what();
+    return status.error->what();
+}
+
+/// Expects that a job has the pairs that the local engine finds.
+inline void expect_result(JobClient& client, const std::string& id, const Work& work) {
+    EXPECT_TRUE(same_bytes(pairs_there(client, id), pairs_here(work)));
+}
+
+/// Submits a job, and expects its result.
+inline void expect_served(JobClient& client, const Work& work) { expect_result(client, submit(client, work), work); }
+
+/// A test with its own server and a client.
+class DetachedTest : public ::testing::Test {
+protected:
+    DetachedServer server_;
+    const std::unique_ptr<JobClient> client_ = server_.client();
+};
 
 inline const std::string some_id = "01234567-89ab-cdef-0123-456789abcdef";
 

@@ -25,51 +25,44 @@ std::string mount_small_disk(const std::string& folder) {
 }
 
 TEST(FullDisk, RefusesWhatDoesNotFit) {
-    const test::TemporaryDirectory folder;
+    const TemporaryDirectory folder;
     const std::string disk = folder.file("disk");
     if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
     {
         const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
         const auto client = server.client();
         const auto boxes = make_boxes("uniform", 50'000, 1), many = make_boxes("uniform", 200'000, 1);
-        const Work work(Objects{std::span(boxes), {}});
+        const Work work(Objects{boxes});
         const auto refused = [&](const std::vector<Box3f>& objects) {
-            const std::string words = test::error_of(ErrorCode::io_failed, [&] {
-                client->submit({std::span(objects), {}});
-            });
-            EXPECT_NE(words.find("No space left"), std::string::npos) << words;
+            expect_error(ErrorCode::io_failed, "No space left", [&] { client->submit({objects}); });
         };
         refused(many);
         const std::vector<Box3f> heap(2000);  // a small input with a result of 16 MB
-        const std::string too_large = client->submit({std::span(heap), {}});
-        const JobStatus status = client->wait(too_large, std::chrono::minutes(1));
-        ASSERT_EQ(int(status.state), int(JobState::failed));
-        EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::io_failed)) << status.error->what();
-        EXPECT_EQ(std::string(status.error->what()),
-                  "the result does not fit on the server's disk, which has 3145728 bytes in all");
+        const std::string too_large = client->submit({heap});
+        const std::string status = failure_of(*client, too_large, ErrorCode::io_failed);
+        EXPECT_EQ(status, "the result does not fit on the server's disk, which has 3145728 bytes in all");
         const std::string id = submit(*client, work);
-        EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+        expect_result(*client, id, work);
         refused(many);
-        EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+        expect_result(*client, id, work);
         client->release(id);
-        const std::string again = submit(*client, work);
-        EXPECT_TRUE(same_bytes(pairs_there(*client, again), pairs_here(work)));
+        expect_served(*client, work);
     }
     EXPECT_EQ(::umount(disk.c_str()), 0);
 }
 
 /// A job whose result finds no room runs again when there is. Its readers receive each pair once.
 TEST(FullDisk, WaitsForRoomForAResult) {
-    const test::TemporaryDirectory folder;
+    const TemporaryDirectory folder;
     const std::string disk = folder.file("disk");
     if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
     {
         const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
         const auto client = server.client();
         const std::string filler = disk + "/filler";
-        test::write_file(filler, std::string(2'000'000, 'x'));
+        write_file(filler, std::string(2'000'000, 'x'));
         const std::vector<Box3f> heap(600);  // its result has 1.4 MB
-        const Work work(Objects{std::span(heap), {}});
+        const Work work(Objects{heap});
         const std::string id = submit(*client, work);
         ASSERT_TRUE(comes_true([&] { return client->status(id).waits_for_room; }));
         EXPECT_EQ(int(client->status(id).state), int(JobState::queued));
@@ -82,10 +75,9 @@ TEST(FullDisk, WaitsForRoomForAResult) {
         reader.join();
         EXPECT_TRUE(same_bytes(read, pairs_here(work)));
         EXPECT_FALSE(client->status(id).waits_for_room);
-        EXPECT_NE(server.log().find("job " + id + ": waits for room for its result: "), std::string::npos)
-            << server.log();
-        EXPECT_NE(server.log().find("No space left"), std::string::npos);
-        EXPECT_EQ(server.log().find(disk), std::string::npos) << "messages do not name the server's folders";
+        EXPECT_TRUE(has_text(server.log(), "job " + id + ": waits for room for its result: "));
+        EXPECT_TRUE(has_text(server.log(), "No space left"));
+        EXPECT_FALSE(has_text(server.log(), disk)) << "messages do not name the server's folders";
     }
     EXPECT_EQ(::umount(disk.c_str()), 0);
 }
@@ -104,14 +96,14 @@ std::string fill(const std::string& disk, std::uint64_t free_blocks) {
 
 /// Jobs that found no room for small results run as soon as the disk has room for these, though it is nearly full.
 TEST(FullDisk, DoesNotMakeSmallResultsWaitForMuchRoom) {
-    const test::TemporaryDirectory folder;
+    const TemporaryDirectory folder;
     const std::string disk = folder.file("disk");
     if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
     {
         const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
         const auto client = server.client();
         const std::vector<Box3f> heap(200);  // its input has 5 KB, its result 159 KB
-        const Work work(Objects{std::span(heap), {}});
+        const Work work(Objects{heap});
         constexpr std::uint64_t jobs = 8, blocks_of_input = 3, blocks_of_result = 42;
         const std::string filler = fill(disk, jobs * blocks_of_input);
         std::vector<std::string> ids;
@@ -120,7 +112,7 @@ TEST(FullDisk, DoesNotMakeSmallResultsWaitForMuchRoom) {
             ASSERT_TRUE(comes_true([&] { return client->status(ids.back()).waits_for_room; })) << i;
         }
         std::filesystem::resize_file(filler, std::filesystem::file_size(filler) - jobs * blocks_of_result * 4096);
-        for (const std::string& id : ids) EXPECT_TRUE(same_bytes(pairs_there(*client, id), pairs_here(work)));
+        for (const std::string& id : ids) expect_result(*client, id, work);
     }
     EXPECT_EQ(::umount(disk.c_str()), 0);
 }
@@ -134,29 +126,26 @@ protected:
 };
 
 TEST_F(FullState, MakesAResultWaitUntilOthersAreReleased) {
-    const Work work(Objects{std::span(heap_), {}});
+    const Work work(Objects{heap_});
     const std::string first = submit(*client_, work);
-    ASSERT_EQ(int(client_->wait(first, std::chrono::minutes(1)).state), int(JobState::done));
+    expect_done(*client_, first);
     const std::string second = submit(*client_, work);
     ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
     client_->release(first);
-    EXPECT_TRUE(same_bytes(pairs_there(*client_, second), pairs_here(work)));
+    expect_result(*client_, second, work);
 }
 
 TEST_F(FullState, EndsAJobThatCanNeverHaveRoom) {
     heap_.resize(1100);  // 4.8 MB
-    const std::string id = client_->submit({std::span(heap_), {}});
-    const JobStatus status = client_->wait(id, std::chrono::minutes(1));
-    ASSERT_EQ(int(status.state), int(JobState::failed));
-    EXPECT_EQ(int(status.error.value().code()), int(ErrorCode::resource_limit));
-    EXPECT_NE(std::string(status.error->what()).find("state_bytes: the server has 4000000"), std::string::npos)
-        << status.error->what();
+    const std::string id = client_->submit({heap_});
+    const std::string status = failure_of(*client_, id, ErrorCode::resource_limit);
+    EXPECT_TRUE(has_text(status, "state_bytes: the server has 4000000"));
 }
 
 TEST_F(FullState, LetsAWaitingJobBeCancelled) {
-    const std::string first = client_->submit({std::span(heap_), {}});
-    ASSERT_EQ(int(client_->wait(first, std::chrono::minutes(1)).state), int(JobState::done));
-    const std::string second = client_->submit({std::span(heap_), {}});
+    const std::string first = client_->submit({heap_});
+    expect_done(*client_, first);
+    const std::string second = client_->submit({heap_});
     ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
     EXPECT_EQ(int(client_->cancel(second).state), int(JobState::cancelled));
     client_->release(second);
@@ -164,15 +153,15 @@ TEST_F(FullState, LetsAWaitingJobBeCancelled) {
 }
 
 TEST_F(FullState, LeavesAWaitingJobToTheNextServer) {
-    const Work work(Objects{std::span(heap_), {}});
+    const Work work(Objects{heap_});
     const std::string first = submit(*client_, work);
-    ASSERT_EQ(int(client_->wait(first, std::chrono::minutes(1)).state), int(JobState::done));
+    expect_done(*client_, first);
     const std::string second = submit(*client_, work);
     ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
     server_.restart();
     ASSERT_TRUE(comes_true([&] { return client_->status(second).waits_for_room; }));
     client_->release(first);
-    EXPECT_TRUE(same_bytes(pairs_there(*client_, second), pairs_here(work)));
+    expect_result(*client_, second, work);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    test::TemporaryDirectory folder_;
+    TemporaryDirectory folder_;
     pid_t id_ = 0;
 };
 
@@ -70,10 +70,10 @@ TEST(Killed, LosesAndRepeatsNothing) {
     // Counting takes seconds. Builds with test hooks check each counted pair, so their crowd is smaller.
     const std::vector<Box3f> crowd(has_test_hooks ? scaled(50'000, 2) : 150'000);
     const std::vector<Box3f> scene = make_boxes("dense", scaled(400'000, 10), 1);
-    const Work of_heap(Objects{std::span(heap), {}}), of_scene(Objects{std::span(scene), {}});
+    const Work of_heap(Objects{heap}), of_scene(Objects{scene});
     const std::string streamed = submit(client, of_heap);
-    ASSERT_EQ(int(client.wait(streamed, std::chrono::minutes(5)).state), int(JobState::done));
-    const std::string running = client.submit({std::span(crowd), {}}, {}, {.count_only = true});
+    expect_done(client, streamed);
+    const std::string running = client.submit({crowd}, {}, {.count_only = true});
     const std::string queued = submit(client, of_scene);
     SlowReader reader;
     std::thread reading([&] { client.result(streamed, [&](std::span<const Pair> pairs) { reader.take(pairs); }); });
@@ -88,10 +88,10 @@ TEST(Killed, LosesAndRepeatsNothing) {
     }
     reading.join();
     EXPECT_TRUE(same_bytes(reader.pairs(), pairs_here(of_heap)));
-    EXPECT_TRUE(same_bytes(pairs_there(client, streamed), pairs_here(of_heap)));
+    expect_result(client, streamed, of_heap);
     const JobStatus counted = client.wait(running, std::chrono::minutes(5));
     EXPECT_EQ(counted.summary.pairs, std::uint64_t(crowd.size()) * (crowd.size() - 1) / 2);
-    EXPECT_TRUE(same_bytes(pairs_there(client, queued), pairs_here(of_scene)));
+    expect_result(client, queued, of_scene);
     EXPECT_EQ(client.list().size(), 3u);
 }
 
@@ -99,7 +99,7 @@ TEST(Killed, WhileAJobIsSubmittedTakesItOnce) {
     ServeProgram server;
     JobClient client(server.address(), {.patience = std::chrono::minutes(2)});
     const auto boxes = make_boxes("uniform", scaled(1000000, 10), 1);
-    Work work(Objects{std::span(boxes), {}});
+    Work work(Objects{boxes});
     work.terms.id = some_id;
     int rounds = 3;
     work.options.progress = [&](double done) {
@@ -112,7 +112,7 @@ TEST(Killed, WhileAJobIsSubmittedTakesItOnce) {
     EXPECT_EQ(rounds, 0);
     EXPECT_EQ(client.list().size(), 1u);
     work.options.progress = {};
-    EXPECT_TRUE(same_bytes(pairs_there(client, some_id), pairs_here(work)));
+    expect_result(client, some_id, work);
 }
 
 }  // namespace

@@ -40,8 +40,8 @@ TEST_F(JobProgramTest, PrintsJobs) {
     const std::string line = id + "  done, 3 objects, 1 pairs\n";
     EXPECT_EQ(outcome.out, id + "\n" + line + line + "a,b\n0,1\n" + line) << outcome.err;
     const Outcome json = with_server("\"$P\" status " + id + " --json; \"$P\" status --json");
-    EXPECT_NE(json.out.find("\"state\": \"done\""), std::string::npos) << json.err;
-    EXPECT_NE(json.out.find("[\n"), std::string::npos);
+    EXPECT_TRUE(has_text(json.out, "\"state\": \"done\"")) << json.err;
+    EXPECT_TRUE(has_text(json.out, "[\n"));
 }
 
 TEST_F(JobProgramTest, CountsAlone) {
@@ -62,8 +62,8 @@ TEST_F(JobProgramTest, ShowsATokenWhereOneIsWanted) {
                         " --quiet --release && \"$P\" status && \"$P\" cancel " + id,
                     "--state state --tokens tokens");
     EXPECT_EQ(outcome.out, id + "\na,b\n0,1\n");
-    EXPECT_NE(outcome.err.find("the server requires a token"), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("there is no job"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(has_text(outcome.err, "the server requires a token"));
+    EXPECT_TRUE(has_text(outcome.err, "there is no job"));
 }
 
 TEST_F(JobProgramTest, TellsWhatWasCancelled) {

@@ -14,18 +14,18 @@ TEST(DetachedServerLog, CountsJobs) {
     const DetachedServer server(show_metrics);
     const auto client = server.client();
     const auto boxes = make_boxes("uniform", 1000, 1);
-    const std::string id = client->submit({std::span(boxes), {}});
-    EXPECT_EQ(pairs_there(*client, id), pairs_here(Work(Objects{std::span(boxes), {}})));
-    EXPECT_TRUE(test::page_has(server.words(), "octopair_jobs_ended_total{outcome=\"done\"} 1"));
+    const std::string id = client->submit({boxes});
+    EXPECT_EQ(pairs_there(*client, id), pairs_here(Work(Objects{boxes})));
+    EXPECT_TRUE(page_has(server.words(), "octopair_jobs_ended_total{outcome=\"done\"} 1"));
     for (const std::string state : {"uploading", "queued", "running"}) {
-        EXPECT_TRUE(test::page_has(server.words(), "octopair_jobs{state=\"" + state + "\"} 0"));
+        EXPECT_TRUE(page_has(server.words(), "octopair_jobs{state=\"" + state + "\"} 0"));
     }
-    EXPECT_TRUE(test::page_has(server.words(), "octopair_memory_bytes 0"));
-    const std::string page = test::metrics_page(server.log());
+    EXPECT_TRUE(page_has(server.words(), "octopair_memory_bytes 0"));
+    const std::string page = metrics_page(server.log());
     for (const std::string direction : {"received", "sent"}) {
-        EXPECT_EQ(page.find("octopair_" + direction + "_bytes_total 0\n"), std::string::npos) << page;
+        EXPECT_FALSE(has_text(page, "octopair_" + direction + "_bytes_total 0\n"));
     }
-    EXPECT_NE(server.log().find("job ended"), std::string::npos) << server.log();
+    EXPECT_TRUE(has_text(server.log(), "job ended"));
 }
 
 /// Each call that makes, reads or ends a job has a line, and each connection.
@@ -33,13 +33,12 @@ TEST(DetachedServerLog, HasALineForEachCallAboutAJob) {
     const DetachedServer server;
     const auto client = server.client();
     const std::vector<Box3f> boxes(3), same(1'000'000);
-    const std::string id = client->submit({std::span(boxes), {}}),
-                      endless = client->submit({std::span(same), {}}, {}, {.count_only = true});
+    const std::string id = client->submit({boxes}), endless = client->submit({same}, {}, {.count_only = true});
     (void)pairs_there(*client, id);
     (void)client->cancel(endless);
     client->release(id);
-    (void)client->submit({std::span(boxes), {}}, {}, {.id = some_id});
-    (void)test::error_of(ErrorCode::bad_input, [&] { client->submit({std::span(same), {}}, {}, {.id = some_id}); });
+    (void)client->submit({boxes}, {}, {.id = some_id});
+    (void)error_of(ErrorCode::bad_input, [&] { client->submit({same}, {}, {.id = some_id}); });
     const auto has = [&](const std::string& line) { return server.log().find(line) != std::string::npos; };
     const std::string owner = ",\"owner\":\"local\"", job = "{\"id\":\"" + id + "\"" + owner;
     for (const std::string& line :
@@ -59,8 +58,8 @@ TEST(DetachedServerLog, CountsRefusals) {
         options.limits.objects = 2;
     });
     const auto boxes = make_boxes("uniform", 3, 1);
-    EXPECT_NE(test::error_of(ErrorCode::resource_limit, [&] { server.client()->submit({std::span(boxes), {}}); }), "");
-    EXPECT_TRUE(test::page_has(server.words(), "octopair_refusals_total{limit=\"objects\"} 1"));
+    EXPECT_NE(error_of(ErrorCode::resource_limit, [&] { server.client()->submit({boxes}); }), "");
+    EXPECT_TRUE(page_has(server.words(), "octopair_refusals_total{limit=\"objects\"} 1"));
 }
 
 /// Complete messages that hold almost no data.
@@ -78,7 +77,7 @@ TEST(DetachedServerLog, CountsUploadsThatStall) {
     }));
     const grpc::Status status = call.finish();
     EXPECT_EQ(failure_in(status).limit(), "stall_seconds") << status.error_message();
-    EXPECT_TRUE(test::page_has(server.words(), "octopair_refusals_total{limit=\"stall_seconds\"} 1"));
+    EXPECT_TRUE(page_has(server.words(), "octopair_refusals_total{limit=\"stall_seconds\"} 1"));
     EXPECT_TRUE(comes_true([&] { return server.files().empty(); }));
 }
 

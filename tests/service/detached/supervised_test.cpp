@@ -94,7 +94,7 @@ TEST_F(PassedSocket, LosesNothingWhenTheServerIsRestarted) {
     const Descriptor socket = listening(path);
     auto program = std::make_unique<ServerProgram>(taking_over(socket.number()));
     const auto boxes = make_boxes("uniform", 2000, 1);
-    const Work work(Objects{std::span(boxes), {}});
+    const Work work(Objects{boxes});
     const std::vector<Pair> expected = pairs_here(work);
     std::atomic<int> done = 0;
     std::vector<std::vector<std::string>> submitted(3);
@@ -103,10 +103,9 @@ TEST_F(PassedSocket, LosesNothingWhenTheServerIsRestarted) {
         clients.emplace_back([&](const std::stop_token& stop) {
             while (!stop.stop_requested()) {
                 PairList pairs;  // a new connection each time: its first call waits for the next server, too
-                connect(address, {.connect_timeout = std::chrono::seconds(60)})
-                    ->find_pairs({std::span(boxes), {}}, pairs);
+                connect(address, {.connect_timeout = std::chrono::seconds(60)})->find_pairs({boxes}, pairs);
                 EXPECT_EQ(pairs.to_vector(), expected);
-                ids.push_back(JobClient(address).submit({std::span(boxes), {}}));
+                ids.push_back(JobClient(address).submit({boxes}));
                 ++done;
             }
         });
@@ -123,8 +122,7 @@ TEST_F(PassedSocket, LosesNothingWhenTheServerIsRestarted) {
     JobClient client(address);
     std::size_t jobs = 0;
     for (const auto& ids : submitted) {
-        for (const std::string& id : ids)
-            EXPECT_EQ(int(client.wait(id, std::chrono::minutes(1)).state), int(JobState::done));
+        for (const std::string& id : ids) expect_done(client, id);
         jobs += ids.size();
         EXPECT_TRUE(same_bytes(pairs_there(client, ids.back()), expected));
     }
@@ -143,8 +141,8 @@ TEST_F(PassedSocket, MayBeOfTcp) {
     const ServerProgram program(taking_over(socket.number()));
     const std::string address = "127.0.0.1:" + std::to_string(ntohs(name.sin_port));
     const auto boxes = make_boxes("uniform", 1000, 1);
-    EXPECT_GT(connect(address, {.connect_timeout = std::chrono::seconds(60)})->count_pairs({std::span(boxes), {}}), 0u);
-    EXPECT_NE(program.log().find("started address=" + address), std::string::npos) << program.log();
+    EXPECT_GT(connect(address, {.connect_timeout = std::chrono::seconds(60)})->count_pairs({boxes}), 0u);
+    EXPECT_TRUE(has_text(program.log(), "started address=" + address));
 }
 
 TEST_F(PassedSocket, ThatOtherMachinesReachNeedsProtection) {
@@ -155,7 +153,7 @@ TEST_F(PassedSocket, ThatOtherMachinesReachNeedsProtection) {
     ASSERT_EQ(::listen(socket.number(), 100), 0);
     ServerProgram program(taking_over(socket.number()));
     EXPECT_EQ(program.wait(), 2);
-    EXPECT_NE(program.log().find("other machines can reach it; that needs TLS"), std::string::npos) << program.log();
+    EXPECT_TRUE(has_text(program.log(), "other machines can reach it; that needs TLS"));
 }
 
 TEST_F(PassedSocket, MustBeOneListeningSocket) {
@@ -164,12 +162,10 @@ TEST_F(PassedSocket, MustBeOneListeningSocket) {
         EXPECT_EQ(program.wait(), 2);
         return program.log();
     };
-    EXPECT_NE(refusal("").find("--listen systemd: systemd passed 0 sockets"), std::string::npos);
-    EXPECT_NE(
-        refusal("exec 3</dev/null 4</dev/null; export LISTEN_FDS=2 LISTEN_PID=$$;").find("systemd passed 2 sockets"),
-        std::string::npos);
-    EXPECT_NE(refusal("exec 3</dev/null; export LISTEN_FDS=1 LISTEN_PID=$$;").find("not a listening socket"),
-              std::string::npos);
+    EXPECT_TRUE(has_text(refusal(""), "--listen systemd: systemd passed 0 sockets"));
+    EXPECT_TRUE(has_text(refusal("exec 3</dev/null 4</dev/null; export LISTEN_FDS=2 LISTEN_PID=$$;"),
+                         "systemd passed 2 sockets"));
+    EXPECT_TRUE(has_text(refusal("exec 3</dev/null; export LISTEN_FDS=1 LISTEN_PID=$$;"), "not a listening socket"));
 }
 
 }  // namespace

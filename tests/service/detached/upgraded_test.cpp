@@ -1,5 +1,4 @@
 // Tests state folders of other versions of octopair, and backups of state folders.
-#include <algorithm>
 #include <thread>
 
 #include "service/detached/detached_server.hpp"
@@ -36,7 +35,7 @@ protected:
 
     DetachedServer server_;
     const std::vector<Box3f> boxes_ = make_boxes("uniform", 50'000, 1);
-    const Work work_{Objects{std::span(boxes_), {}}};
+    const Work work_{Objects{boxes_}};
 };
 
 TEST_F(Upgraded, JobsOfOtherVersionsRunFromTheirInput) {
@@ -44,7 +43,7 @@ TEST_F(Upgraded, JobsOfOtherVersionsRunFromTheirInput) {
         write_foreign_job(job_file(), work_, algorithm);
         server_.start();
         const auto client = server_.client();
-        EXPECT_TRUE(same_bytes(pairs_there(*client, some_id), pairs_here(work_)));
+        expect_result(*client, some_id, work_);
         Work again = work_;
         again.terms.id = some_id;
         EXPECT_EQ(submit(*client, again), some_id) << "the client submits the same job again";
@@ -95,29 +94,29 @@ TEST_F(Upgraded, ANewerFolderIsNotTouched) {
     }
     write_file(server_.state() + "/version", "octopair state 2\n");
     server_.start();
-    EXPECT_TRUE(same_bytes(pairs_there(*server_.client(), some_id), pairs_here(work_)));
+    expect_result(*server_.client(), some_id, work_);
 }
 
+class Backup : public DetachedTest {};
+
 /// A copy of the folder of a running server has all jobs that were acknowledged before the copy began.
-TEST(Backup, OfARunningServerIsComplete) {
-    DetachedServer server;
-    const auto client = server.client();
+TEST_F(Backup, OfARunningServerIsComplete) {
     const auto boxes = make_boxes("uniform", 3000, 1);
-    const Work work(Objects{std::span(boxes), {}});
+    const Work work(Objects{boxes});
     const std::vector<Pair> expected = pairs_here(work);
     std::vector<std::string> before;
-    for (int i = 0; i < 30; ++i) before.push_back(submit(*client, work));
+    for (int i = 0; i < 30; ++i) before.push_back(submit(*client_, work));
     std::jthread load([&](const std::stop_token& stop) {
-        const auto other = server.client();
+        const auto other = server_.client();
         while (!stop.stop_requested()) {
             const std::string id = submit(*other, work);
             (void)other->wait(id, std::chrono::minutes(1));
             other->release(id);
         }
     });
-    const std::string backup = server.folder().file("backup");
+    const std::string backup = server_.folder().file("backup");
     std::filesystem::create_directory(backup);
-    for (const auto& entry : std::filesystem::directory_iterator(server.state())) {
+    for (const auto& entry : std::filesystem::directory_iterator(server_.state())) {
         std::error_code vanished;
         std::filesystem::copy_file(entry.path(), backup + "/" + entry.path().filename().string(), vanished);
     }

@@ -11,15 +11,15 @@ namespace {
 std::vector<Pair> list(std::span<const Pair> pairs) { return {pairs.begin(), pairs.end()}; }
 
 TEST(RemoteSceneLarge, AFrameOfAMillionObjects) {
-    const std::uint64_t count = test::scaled(1'000'000, 10);
+    const std::uint64_t count = scaled(1'000'000, 10);
     const std::vector<Box3f> boxes = samples::make_scene("uniform", count, 1);
     const std::vector<Box3f> moved = samples::make_scene("uniform", count, 2);
-    test::SceneServer server;
+    SceneServer server;
     RemoteScene remote = server.scene();
     Scene local;
     std::vector<ObjectId> ids(boxes.size());
-    local.add(Objects{std::span(boxes)}, ids);
-    remote.add(Objects{std::span(boxes)}, ids);
+    local.add(Objects{boxes}, ids);
+    remote.add(Objects{boxes}, ids);
     EXPECT_EQ(list(remote.step().began), list(local.step().began));
 
     local.move(ids, std::span(moved));

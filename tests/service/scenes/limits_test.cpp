@@ -15,7 +15,7 @@ std::vector<ObjectId> add_boxes(RemoteScene& scene, std::size_t count) {
     std::vector<Box3f> boxes;
     for (std::size_t i = 0; i < count; ++i) boxes.push_back({{float(2 * i), 0, 0}, {float(2 * i + 1), 1, 1}});
     std::vector<ObjectId> ids(count);
-    scene.add(Objects{std::span<const Box3f>(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     return ids;
 }
 
@@ -29,7 +29,7 @@ std::string limit_of(RemoteScene& scene) {
 }
 
 TEST(RemoteSceneLimits, Objects) {
-    test::SceneServer server({.objects = 100});
+    SceneServer server({.objects = 100});
     RemoteScene scene = server.scene();
     std::vector<ObjectId> ids = add_boxes(scene, 100);
     EXPECT_EQ(limit_of(scene), "none");
@@ -41,7 +41,7 @@ TEST(RemoteSceneLimits, Objects) {
 }
 
 TEST(RemoteSceneLimits, IndicesOfRemovedObjectsAreFreeAgain) {
-    test::SceneServer server({.objects = 100});
+    SceneServer server({.objects = 100});
     RemoteScene scene = server.scene();
     std::vector<ObjectId> ids = add_boxes(scene, 100);
     for (int i = 0; i < 5; ++i) {
@@ -53,29 +53,29 @@ TEST(RemoteSceneLimits, IndicesOfRemovedObjectsAreFreeAgain) {
 }
 
 TEST(RemoteSceneLimits, Memory) {
-    test::SceneServer server({.memory_bytes = 16'000'000});
+    SceneServer server({.memory_bytes = 16'000'000});
     RemoteScene scene = server.scene(), other = server.scene();
     (void)add_boxes(scene, 100'000);
     EXPECT_EQ(limit_of(scene), "memory_bytes 16000000");
     (void)add_boxes(other, 50'000);
-    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "none"; })) << "the refused scene still has memory";
+    EXPECT_TRUE(comes_true([&] { return limit_of(other) == "none"; })) << "the refused scene still has memory";
 }
 
 void add_crowd(RemoteScene& scene, std::size_t count) {
     const std::vector<Box3f> boxes(count, Box3f{{0, 0, 0}, {1, 1, 1}});
     std::vector<ObjectId> ids(boxes.size());
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
 }
 
 TEST(RemoteSceneLimits, MemoryForPairs) {
-    test::SceneServer server({.memory_bytes = 30'000'000});
+    SceneServer server({.memory_bytes = 30'000'000});
     RemoteScene scene = server.scene();
     add_crowd(scene, 40'000);
     EXPECT_EQ(limit_of(scene), "memory_bytes 30000000") << "800 million pairs, 6.4 GB";
 }
 
 TEST(RemoteSceneLimits, Pairs) {
-    test::SceneServer server({.pairs = 2000});
+    SceneServer server({.pairs = 2000});
     RemoteScene scene = server.scene();
     add_crowd(scene, 63);
     EXPECT_EQ(limit_of(scene), "none") << "1,953 pairs";
@@ -84,16 +84,16 @@ TEST(RemoteSceneLimits, Pairs) {
 }
 
 TEST(RemoteSceneLimits, PlacesOfAClient) {
-    test::SceneServer server({.jobs_per_client = 1});
+    SceneServer server({.jobs_per_client = 1});
     RemoteScene scene = server.scene(), other = server.scene();
     EXPECT_EQ(limit_of(scene), "none");
     EXPECT_EQ(limit_of(other), "jobs_per_client 1");
 }
 
 TEST(RemoteSceneLimits, AFrameThatStallsEnds) {
-    test::SceneServer server({}, std::chrono::seconds(1));
-    test::RawScene scene(server.address());
-    test::Records records;
+    SceneServer server({}, std::chrono::seconds(1));
+    RawScene scene(server.address());
+    Records records;
     records.boxes(10).step().boxes(1);
     ASSERT_TRUE(scene.send(records.bytes));
     const grpc::Status status = scene.end();
@@ -102,7 +102,7 @@ TEST(RemoteSceneLimits, AFrameThatStallsEnds) {
 }
 
 TEST(RemoteSceneLimits, ASceneMayBeIdleBetweenFrames) {
-    test::SceneServer server({}, std::chrono::seconds(1));
+    SceneServer server({}, std::chrono::seconds(1));
     RemoteScene scene = server.scene();
     const std::vector<ObjectId> ids = add_boxes(scene, 10);
     (void)scene.step();
@@ -111,14 +111,14 @@ TEST(RemoteSceneLimits, ASceneMayBeIdleBetweenFrames) {
 }
 
 TEST(RemoteSceneLimits, AClientThatDoesNotReadIsLeft) {
-    test::SceneServer server({.jobs = 1}, std::chrono::seconds(1));
-    test::RawScene scene(server.address());
-    test::Records records;
+    SceneServer server({.jobs = 1}, std::chrono::seconds(1));
+    RawScene scene(server.address());
+    Records records;
     records.boxes(2000).step();  // 2 million pairs, 16 MB
     ASSERT_TRUE(scene.send(records.bytes));
     RemoteScene other = server.scene();
-    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "jobs 1"; })) << "the scene has not begun";
-    EXPECT_TRUE(test::comes_true([&] { return limit_of(other) == "none"; }));
+    EXPECT_TRUE(comes_true([&] { return limit_of(other) == "jobs 1"; })) << "the scene has not begun";
+    EXPECT_TRUE(comes_true([&] { return limit_of(other) == "none"; }));
 }
 
 }  // namespace

@@ -11,9 +11,6 @@
 namespace octopair::test {
 namespace {
 
-using test::RawScene;
-using test::Records;
-
 class SceneMessages : public ::testing::Test {
 protected:
     std::string refusal_of(Bytes calls) {
@@ -30,7 +27,7 @@ protected:
         EXPECT_EQ(scene.step().pairs(), 0u);
     }
 
-    test::SceneServer server_;
+    SceneServer server_;
 };
 
 TEST_F(SceneMessages, BytesThatAreNoRecording) {

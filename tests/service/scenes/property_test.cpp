@@ -15,13 +15,13 @@
 namespace octopair::test {
 namespace {
 
-constexpr std::uint64_t histories_per_kind = test::scaled(10, 5);
+constexpr std::uint64_t histories_per_kind = scaled(10, 5);
 
 /// A local and a remote scene that must stay equal.
 class TwinScene {
 public:
     TwinScene() = default;
-    TwinScene(const SceneOptions& options, test::SceneServer& server, std::uint64_t seed)
+    TwinScene(const SceneOptions& options, SceneServer& server, std::uint64_t seed)
         : server_(&server),
           random_(seed),
           local_(std::in_place, options),
@@ -135,7 +135,7 @@ private:
         return remote_->step();
     }
 
-    test::SceneServer* server_ = nullptr;
+    SceneServer* server_ = nullptr;
     std::mt19937_64 random_;
     std::optional<Scene> local_;
     std::optional<RemoteScene> remote_;
@@ -146,14 +146,14 @@ private:
 class RemoteSceneProperty : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(RemoteSceneProperty, EveryStepIsThatOfALocalScene) {
-    test::SceneServer server;
-    const std::uint64_t count = test::case_count(histories_per_kind);
+    SceneServer server;
+    const std::uint64_t count = case_count(histories_per_kind);
     std::uint64_t failures = 0, failed_steps = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t seed = test::case_seed(GetParam(), i);
+        const std::uint64_t seed = case_seed(GetParam(), i);
         SCOPED_TRACE("OCTOPAIR_TEST_SEED=" + std::to_string(seed));
-        test::History<TwinScene> history(GetParam(), seed,
-                                         [&](const SceneOptions& options) { return TwinScene(options, server, seed); });
+        History<TwinScene> history(GetParam(), seed,
+                                   [&](const SceneOptions& options) { return TwinScene(options, server, seed); });
         history.run();
         if (HasFailure()) return;
         failures += history.scene().failures();
@@ -162,7 +162,7 @@ TEST_P(RemoteSceneProperty, EveryStepIsThatOfALocalScene) {
     EXPECT_TRUE(count < 2 || (failures > 0 && failed_steps > 0));
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, RemoteSceneProperty, ::testing::ValuesIn(test::all_kind_names()), test::param_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, RemoteSceneProperty, ::testing::ValuesIn(all_kind_names()), param_name);
 
 }  // namespace
 }  // namespace octopair::test

@@ -22,7 +22,7 @@ public:
 
     Records& boxes(std::size_t count) {
         const std::vector<Box3f> all(count, Box3f{{0, 0, 0}, {1, 1, 1}});
-        add(Objects{std::span(all)}, {});
+        add(Objects{all}, {});
         return *this;
     }
     Records& step() {

@@ -32,7 +32,7 @@ constexpr std::uint64_t all_pairs = 1'000'000;
 template <typename Real>
 std::vector<ObjectId> add_to(RemoteScene& scene, const std::vector<Box<Real>>& boxes) {
     std::vector<ObjectId> ids(boxes.size());
-    scene.add(Objects{std::span(boxes)}, ids);
+    scene.add(Objects{boxes}, ids);
     return ids;
 }
 
@@ -375,8 +375,7 @@ TEST_F(SceneWatching, AServerThatStopsEndsWaits) {
     (void)scene.step();
     const std::string id = only_id();
     std::jthread thread([&] {
-        ClientOptions options;
-        options.patience = 100ms;
+        ClientOptions options{.patience = 100ms};
         try {
             (void)SceneWatcher(server_.address(), options).next(id, 1, 600s, 0);
             ADD_FAILURE() << "a snapshot of an ended server";
