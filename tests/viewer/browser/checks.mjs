@@ -62,8 +62,8 @@ export async function waitForText(page, selector, pattern, timeout = 20_000) {
   }
 }
 
-// Every key changes what it says.
-export async function checkKeys(page) {
+// Every key changes what it says. `more`: further keys, with the settings that they change.
+export async function checkKeys(page, more = {}) {
   const camera = () => page.evaluate(() => window.octopairView.camera());
   const key = async (name, check) => {
     const [before, place] = [await settings(page), await camera()];
@@ -75,7 +75,7 @@ export async function checkKeys(page) {
     await key(name, (_, __, moved) => moved);
   }
   const names = {c: 'colour', v: 'show', g: 'edges', l: 'lines', o: 'octants', x: 'section', PageUp: 'cut', PageDown: 'cut', r: 'flip', u: 'up', i: 'camera',
-    t: 'theme'};
+    t: 'theme', ...more};
   for (const [name, setting] of Object.entries(names)) await key(name, (now, before) => now[setting] !== before[setting]);
   for (const name of ['v', 'v', 'u', 'i']) await page.keyboard.press(name);
   await page.waitForTimeout(300);
@@ -105,6 +105,7 @@ export async function checkKeys(page) {
   await page.keyboard.press('Escape');
   await page.evaluate(() => document.activeElement.blur());
   await page.keyboard.press('?');
+  assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), true);
   assert.ok(await page.locator('#help-rows tr').count() > 25);
   assert.match(await text(page, '#help'), /pinch/);
   await page.keyboard.press('Escape');

@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
-import {data, launch, open, pixel, project, ready, settings, waitForData} from '../page/browser.mjs';
+import {clickAt, data, launch, open, pixel, project, ready, runTests, settings, waitForData} from '../page/browser.mjs';
 import {checkAccessibility, checkKeys, colourAt, complete, describePicture, light, near, partnersIn, readCsv, readJsonl, searchFor, tablePairs, text, topOf,
   waitForText} from './checks.mjs';
 import {hostileName, Inputs, shapesScene, threeBoxes} from './inputs.mjs';
@@ -23,11 +23,18 @@ const inputs = new Inputs(folder, options.program);
 const browser = await launch();
 const children = new Set();
 const tests = [];
-const test = (name, run) => tests.push({name, run});
+const test = (name, go) => tests.push({name, go});
 
 function keep(child) {
   children.add(child);
   return child;
+}
+
+// Starts a server at a socket, and waits until it listens.
+async function serve(name, ...more) {
+  const server = keep(new Child(options.program, ['serve', '--listen', `unix:${inputs.path(name)}`, ...more, '--log-level', 'warn']));
+  while (!existsSync(inputs.path(name))) await new Promise(done => setTimeout(done, 50));
+  return server;
 }
 
 function python(...words) {
@@ -53,11 +60,6 @@ async function withView(words, check, context = {}) {
   } finally {
     await program.stop();
   }
-}
-
-async function clickAt(page, point) {
-  const at = await project(page, point);
-  await page.mouse.click(at.x, at.y);
 }
 
 // ---- Boxes -----------------------------------------------------------------------------------------------------------
@@ -464,8 +466,7 @@ test('a live scene of Python', async () => {
 
 test('a server: jobs, scenes and the page of a scene', async () => {
   const address = `unix:${inputs.path('s.socket')}`;
-  const server = keep(new Child(options.program, ['serve', '--listen', address, '--state', inputs.path('state'), '--log-level', 'warn']));
-  while (!existsSync(inputs.path('s.socket'))) await new Promise(done => setTimeout(done, 50));
+  const server = await serve('s.socket', '--state', inputs.path('state'));
   const simulation = python('remote', address);
   await simulation.line();
   const program = keep(await view(options.program, [address]));
@@ -490,9 +491,7 @@ test('a server: jobs, scenes and the page of a scene', async () => {
 
 test('a server that ends and starts again', async () => {
   const address = `unix:${inputs.path('again.socket')}`;
-  const serve = () => keep(new Child(options.program, ['serve', '--listen', address, '--log-level', 'warn']));
-  let server = serve();
-  while (!existsSync(inputs.path('again.socket'))) await new Promise(done => setTimeout(done, 50));
+  let server = await serve('again.socket');
   const simulation = python('remote', address);
   await simulation.line();
   const program = keep(await view(options.program, [address]));
@@ -504,7 +503,7 @@ test('a server that ends and starts again', async () => {
     await simulation.stop('SIGKILL');
     await waitForText(page, '#banner', /no server answers/);
     await waitForText(scene.page, '#banner', /no server answers/);
-    server = serve();
+    server = await serve('again.socket');
     await page.locator('#banner').waitFor({state: 'hidden'});
     await waitForData(page, 'scenes', '0');
     await waitForText(scene.page, '#notices', /simulation has ended/);
@@ -518,8 +517,7 @@ test('a server that ends and starts again', async () => {
 
 test('a server that stops for a while, with a scene at rest', async () => {
   const address = `unix:${inputs.path('rest.socket')}`;
-  const server = keep(new Child(options.program, ['serve', '--listen', address, '--log-level', 'warn']));
-  while (!existsSync(inputs.path('rest.socket'))) await new Promise(done => setTimeout(done, 50));
+  const server = await serve('rest.socket');
   const simulation = python('remote', address);
   await simulation.line();
   simulation.write('pairs\n');
@@ -626,26 +624,12 @@ test('screenshots', async () => {
   await page.close();
 });
 
-async function runAll() {
-  let failed = 0;
-  for (const {name, run: go} of tests.filter(entry => entry.name.includes(options.only))) {
-    const began = performance.now();
-    try {
-      await go();
-      console.log(`ok   ${name} (${Math.round(performance.now() - began)} ms)`);
-    } catch (error) {
-      failed += 1;
-      console.log(`FAIL ${name}: ${error.message}`);
-    }
-    for (const child of children) await child.stop('SIGKILL');
-    children.clear();
-  }
-  return failed;
-}
-
 let failed = 1;
 try {
-  failed = await runAll();
+  failed = await runTests(tests, options.only, async () => {
+    for (const child of children) await child.stop('SIGKILL');
+    children.clear();
+  });
 } finally {
   await browser.close();
   rmSync(folder, {recursive: true});

@@ -50,6 +50,11 @@ export function pixel(page, {x, y}) {
   return page.evaluate(([px, py]) => window.octopairView.pixel(px, py), [x, y]);
 }
 
+export async function clickAt(page, point) {
+  const {x, y} = await project(page, point);
+  await page.mouse.click(x, y);
+}
+
 export function settings(page) {
   return page.evaluate(() => window.octopairView.settings());
 }
@@ -60,4 +65,21 @@ export async function accessibility(page) {
   const result = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
   return result.violations.filter(violation => ['serious', 'critical'].includes(violation.impact))
     .map(violation => `${violation.id}: ${violation.nodes.map(node => `${node.target} ${node.failureSummary}`).join('; ')}`);
+}
+
+// Runs the tests whose names contain `only`, and prints a line for each. Returns how many failed.
+export async function runTests(tests, only, after = () => undefined) {
+  let failed = 0;
+  for (const {name, go} of tests.filter(entry => entry.name.includes(only))) {
+    const began = performance.now();
+    try {
+      await go();
+      console.log(`ok   ${name} (${Math.round(performance.now() - began)} ms)`);
+    } catch (error) {
+      failed += 1;
+      console.log(`FAIL ${name}: ${error.message}`);
+    }
+    await after();
+  }
+  return failed;
 }

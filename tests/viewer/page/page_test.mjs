@@ -6,7 +6,8 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
-import {accessibility, data, launch, open, pixel, project, ready, settings, viewerFolder, waitForData} from './browser.mjs';
+import {checkAccessibility, checkKeys, colourAt, light, text} from '../browser/checks.mjs';
+import {accessibility, clickAt, data, launch, open, pixel, project, ready, runTests, settings, viewerFolder, waitForData} from './browser.mjs';
 import {exportPage} from './export.mjs';
 
 const {values: options} = parseArgs({options: {
@@ -16,17 +17,11 @@ const {startMock} = await import(pathToFileURL(join(viewerFolder, 'mock_server.m
 
 const tests = [];
 const test = (name, scene, objects, run, context = {}) => tests.push({name, scene, objects, run, context});
-const text = (page, selector) => page.locator(selector).innerText();
 
 // The middle of the box of an object that is drawn in front, from the mock's first frame.
 function middleOf(scene, k) {
   const {boxes} = scene.frame(0);
   return [0, 1, 2].map(axis => 1000 * (axis + 1) + 0.5 * (boxes[6 * k + axis] + boxes[6 * k + axis + 3]));
-}
-
-async function clickObject(page, point) {
-  const at = await project(page, point);
-  await page.mouse.click(at.x, at.y);
 }
 
 test('loads and counts', 'static', 10, async ({page, scene}) => {
@@ -40,14 +35,14 @@ test('colours are those of the legend', 'static', 1, async ({page, scene}) => {
   // The top of a box that does not collide has the colour of the legend itself.
   const {boxes} = scene.frame(0);
   const top = [1000 + 0.5 * (boxes[0] + boxes[3]), 2000 + 0.5 * (boxes[1] + boxes[4]), 3000 + boxes[5]];
-  assert.deepEqual(await pixel(page, await project(page, top)), [176, 188, 200]);
-  assert.deepEqual(await pixel(page, {x: 500, y: 60}), [243, 245, 247]);
+  await colourAt(page, top, light.free, 0);
+  assert.deepEqual(await pixel(page, {x: 500, y: 60}), light.background);
   await page.evaluate(() => window.octopairView.select(0));
-  assert.deepEqual(await pixel(page, await project(page, top)), [28, 110, 235]);
+  await colourAt(page, top, light.selected, 0);
 });
 
 test('a click selects', 'static', 1, async ({page, scene}) => {
-  await clickObject(page, middleOf(scene, 0));
+  await clickAt(page, middleOf(scene, 0));
   await waitForData(page, 'selected', '0');
   await page.locator('#selection dl').waitFor();
   assert.match(await text(page, '#selection'), /octal code\s+\{1,4\}/);
@@ -59,8 +54,7 @@ test('a click selects what is in front', 'static', 300, async ({page, scene}) =>
   // Every object whose middle is visible must be found at its middle: a click never selects an object behind another.
   let found = 0;
   for (let k = 0; k < 300; k += 30) {
-    const at = await project(page, middleOf(scene, k));
-    await page.mouse.click(at.x, at.y);
+    await clickAt(page, middleOf(scene, k));
     await page.waitForFunction(() => document.documentElement.dataset.selected !== '');
     if (await data(page, 'selected') === String(k)) found += 1;
   }
@@ -177,52 +171,11 @@ test('the table sorts, filters and selects', 'static', 1000, async ({page, scene
 });
 
 test('every key has its effect', 'moving', 60, async ({page}) => {
-  const key = async (name, check) => {
-    const before = await settings(page);
-    const camera = await page.evaluate(() => window.octopairView.camera());
-    await page.keyboard.press(name);
-    await page.waitForTimeout(30);
-    assert.ok(check(await settings(page), before, await page.evaluate(() => window.octopairView.camera()) !== camera), `key ${name}`);
-  };
-  for (const name of ['w', 's', 'a', 'd', 'e', 'q', 'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-', '1', '2', '3', '4', 'h']) {
-    await key(name, (_, __, moved) => moved || name === 'h');
-  }
-  const names = {c: 'colour', v: 'show', g: 'edges', l: 'lines', k: 'contacts', o: 'octants', x: 'section', PageUp: 'cut', PageDown: 'cut', r: 'flip', u: 'up',
-    i: 'camera', t: 'theme'};
-  for (const [name, setting] of Object.entries(names)) await key(name, (now, before) => now[setting] !== before[setting]);
-  await page.waitForTimeout(300);
-  await key(']', (now, before) => now.level === before.level + 1);
-  await key('[', (now, before) => now.level === before.level - 1);
-  await page.keyboard.press('n');
-  await page.waitForFunction(() => document.documentElement.dataset.selected.includes(','));
-  const first = await data(page, 'selected');
-  await page.keyboard.press('n');
-  await page.waitForFunction(old => document.documentElement.dataset.selected !== old, first);
-  await page.keyboard.press('p');
-  await waitForData(page, 'selected', first);
-  await key('f', () => true);
-  await page.keyboard.press('Escape');
-  await waitForData(page, 'selected', '');
+  await checkKeys(page, {k: 'contacts'});
   await page.keyboard.press('.');
   await waitForData(page, 'frame', '1');
   await page.keyboard.press(',');
   await waitForData(page, 'frame', '0');
-  for (const [name, drawer] of [['z', 'side'], ['m', 'options']]) {
-    await page.keyboard.press(name);
-    await waitForData(page, drawer, 'closed');
-    await page.keyboard.press(name);
-    await waitForData(page, drawer, 'open');
-  }
-  await page.keyboard.press('y');
-  await page.waitForFunction(() => /link/i.test(document.getElementById('message').textContent));
-  await page.keyboard.press('/');
-  assert.equal(await page.evaluate(() => document.activeElement.id), 'search-text');
-  await page.keyboard.press('Escape');
-  await page.keyboard.press('?');
-  assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), true);
-  assert.ok(await page.locator('#help-rows tr').count() > 25);
-  await page.keyboard.press('Escape');
-  assert.equal(await page.locator('#help').evaluate(dialog => dialog.open), false);
 });
 
 test('frames step and play', 'moving', 100, async ({page, scene}) => {
@@ -290,12 +243,12 @@ test('a section hides boxes, and colours have a legend', 'static', 500, async ({
 
 test('a section cuts boxes', 'static', 1, async ({page, scene, address, browser}) => {
   const at = await project(page, middleOf(scene, 0));
-  const [background, seen] = [[243, 245, 247], await pixel(page, at)];
-  assert.notDeepEqual(seen, background);
+  const seen = await pixel(page, at);
+  assert.notDeepEqual(seen, light.background);
   for (const [hash, hidden] of [['section=x&cut=0', true], ['section=x&cut=1', false], ['section=z&cut=1&flip=1', true], ['section=z&cut=0&flip=1', false]]) {
     const other = await open(browser, `${address}#${hash}`);
     await ready(other.page);
-    assert.deepEqual(await pixel(other.page, at), hidden ? background : seen, hash);
+    assert.deepEqual(await pixel(other.page, at), hidden ? light.background : seen, hash);
     await other.close();
   }
 });
@@ -328,14 +281,11 @@ test('shapes are drawn', 'shapes', 30, async ({page, scene}) => {
   // The top of a cube that nothing hides.
   const cube = [...Array(30).keys()].filter(k => k % 3 === 1).sort((p, q) => boxes[6 * q + 5] - boxes[6 * p + 5])[0];
   const top = [0, 1, 2].map(axis => 1000 * (axis + 1) + (axis === 2 ? boxes[6 * cube + 5] : 0.5 * (boxes[6 * cube + axis] + boxes[6 * cube + axis + 3])));
-  const wanted = scene.partnerCounts(0)[cube] ? [222, 88, 50] : [176, 188, 200];
-  const seen = await pixel(page, await project(page, top));
-  assert.ok(seen.every((value, k) => Math.abs(value - wanted[k]) <= 2), `${seen} instead of ${wanted}`);
+  await colourAt(page, top, scene.partnerCounts(0)[cube] ? light.colliding : light.free);
   await page.keyboard.press('b');
   assert.equal((await settings(page)).style, 'both');
   await waitForData(page, 'drawn', '30');
-  const at = await project(page, middleOf(scene, 0));
-  await page.mouse.click(at.x, at.y);
+  await clickAt(page, middleOf(scene, 0));
   await page.waitForFunction(() => document.documentElement.dataset.selected);
 });
 
@@ -454,17 +404,7 @@ for (const colorScheme of ['light', 'dark']) {
   for (const viewport of [{width: 1280, height: 720}, {width: 390, height: 844}]) {
     test(`accessible in ${colorScheme} at ${viewport.width}`, 'moving', 60, async ({page}) => {
       assert.equal(await data(page, 'theme'), colorScheme);
-      assert.deepEqual(await accessibility(page), []);
-      await page.evaluate(() => window.octopairView.select(3));
-      if (viewport.width < 760) await page.keyboard.press('z');
-      await page.locator('#selection dl').waitFor();
-      assert.deepEqual(await accessibility(page), []);
-      await page.click('#tab-scene');
-      if (viewport.width < 760) await page.keyboard.press('m');
-      assert.deepEqual(await accessibility(page), []);
-      await page.keyboard.press('?');
-      assert.deepEqual(await accessibility(page), []);
-      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      await checkAccessibility(page, viewport.width < 760);
     }, {colorScheme, viewport});
   }
 }
@@ -539,17 +479,7 @@ async function runAll() {
   const browser = await launch();
   const all = options.server ? [{name: 'program', go: () => testProgram(browser, options.server)}] :
     [...tests.map(entry => ({name: entry.name, go: () => testMock(browser, entry)})), {name: 'exported page', go: () => testExport(browser)}];
-  let failed = 0;
-  for (const {name, go} of all.filter(entry => entry.name.includes(options.only))) {
-    const began = performance.now();
-    try {
-      await go();
-      console.log(`ok   ${name} (${Math.round(performance.now() - began)} ms)`);
-    } catch (error) {
-      failed += 1;
-      console.log(`FAIL ${name}: ${error.message}`);
-    }
-  }
+  const failed = await runTests(all, options.only);
   await browser.close();
   return failed;
 }
