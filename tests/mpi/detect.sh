@@ -20,14 +20,6 @@ write("padding.npy", "<f8", "(23000,)", array.array("d", [0.001 * (i % 7) for i 
 write("spheres.npy", "<f4", "(1000, 4)", array.array("f", [(i * 37 % 101) * 0.01 for i in range(4000)]))
 END
 
-# RANKS NAME ARGUMENTS...: fails unless ranks write the same file as threads.
-same() {
-    local ranks=$1 name=$2
-    shift 2
-    "$program" detect "$@" --output "local.$name" --quiet
-    on_ranks "$ranks" detect "$@" --engine mpi --output "ranks.$name" --quiet
-    cmp "local.$name" "ranks.$name" || fail "$ranks ranks give another $name for: $*"
-}
 for order in ascending octal; do
     on_ranks 3 detect a.npy b.npy --order $order --engine mpi --index-type uint64 --output wide.npy --quiet
     "$program" detect a.npy b.npy --order $order --output narrow.npy --quiet

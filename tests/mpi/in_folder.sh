@@ -9,6 +9,15 @@ cd "$work"
 fail() { echo "$*" && exit 1; }
 on_ranks() { "$mpirun" -n "$1" "$program" "${@:2}"; }
 
+# RANKS NAME ARGUMENTS...: fails unless ranks write the same file as threads.
+same() {
+    local ranks=$1 name=$2
+    shift 2
+    "$program" detect "$@" --output "local.$name" --quiet
+    on_ranks "$ranks" detect "$@" --engine mpi --output "ranks.$name" --quiet
+    cmp "local.$name" "ranks.$name" || fail "$ranks ranks give another $name for: $*"
+}
+
 # STATUS WORDS ARGUMENTS...: checks that `detect` fails with STATUS, prints one message with WORDS, and leaves no file.
 refuses() {
     local status=$1 words=$2 got=0

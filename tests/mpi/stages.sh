@@ -60,22 +60,18 @@ with open("padding.npy", "wb") as f:
 END
 
 # RANKS NAME ARGUMENTS...: fails unless ranks write the same file as threads, and the file has results.
-same() {
-    local ranks=$1 name=$2
-    shift 2
-    "$program" detect "$@" --output "local.$name" --quiet
-    on_ranks "$ranks" detect "$@" --engine mpi --output "ranks.$name" --quiet
-    cmp "local.$name" "ranks.$name" || fail "$ranks ranks give another $name for: $*"
-    [ "$(wc -l < "local.$name")" -gt 2 ] || [ "${name##*.}" = npy ] || fail "nothing to compare for: $*"
+same_results() {
+    same "$@"
+    [ "$(wc -l < "local.$2")" -gt 2 ] || [ "${2##*.}" = npy ] || fail "nothing to compare for: $*"
 }
-for ranks in 1 2; do same $ranks found.jsonl shapes.json --stage features --margin 0.02; done
-same 3 found.csv shapes.json --stage objects --order octal --padding padding.npy
-same 2 found.npy shapes.json others.json --stage objects
-same 3 found.jsonl shapes.json --against others.json --stage features --max-contacts 2 --exclude rules.json
-same 2 found.csv moving.json --stage objects --same-parent exclude
-same 3 pairs.csv shapes.json --stage pairs
-same 2 pairs.npy shapes.json --stage pairs --exclude rules.json
-same 3 found.jsonl folds.off --objects triangle --stage features --adjacent include
+for ranks in 1 2; do same_results $ranks found.jsonl shapes.json --stage features --margin 0.02; done
+same_results 3 found.csv shapes.json --stage objects --order octal --padding padding.npy
+same_results 2 found.npy shapes.json others.json --stage objects
+same_results 3 found.jsonl shapes.json --against others.json --stage features --max-contacts 2 --exclude rules.json
+same_results 2 found.csv moving.json --stage objects --same-parent exclude
+same_results 3 pairs.csv shapes.json --stage pairs
+same_results 2 pairs.npy shapes.json --stage pairs --exclude rules.json
+same_results 3 found.jsonl folds.off --objects triangle --stage features --adjacent include
 [ "$("$program" detect others.json --quiet)" = "$(on_ranks 2 detect others.json --engine mpi --quiet)" ] ||
     fail "ranks print other pairs"
 

@@ -1,10 +1,11 @@
 """View: the addresses of a running scene's page, and frames over its WebSocket."""
-import base64
 import json
-import os
+import pathlib
 import socket
 import struct
+import sys
 import time
+import types
 import urllib.parse
 import urllib.request
 
@@ -13,50 +14,32 @@ import pytest
 
 import octopair as op
 
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "viewer"))
+from view_process import WebSocket  # noqa: E402
+
 pytest.importorskip("octopair._view")
 
 HEADER = 64  # bytes before the arrays of a frame (viewer/protocol.md)
 WHOLE = 0xFFFFFFFF
 
 
-class Page:
-    """A page that is connected by WebSocket, with the standard library alone."""
+class Page(WebSocket):
+    """A page that is connected by WebSocket."""
 
     def __init__(self, address):
         host = urllib.parse.urlparse(address)
-        self.socket = socket.create_connection((host.hostname, host.port), timeout=20)
-        key = base64.b64encode(os.urandom(16)).decode()
-        self.socket.sendall(f"GET /socket HTTP/1.1\r\nHost: {host.netloc}\r\nOrigin: http://{host.netloc}\r\nUpgrade: websocket\r\n"
-                            f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode())
-        self.bytes = b""
-        while b"\r\n\r\n" not in self.bytes:
-            self.bytes += self.socket.recv(65536)
-        head, self.bytes = self.bytes.split(b"\r\n\r\n", 1)
-        assert b" 101 " in head.split(b"\r\n")[0]
-
-    def take(self, count):
-        while len(self.bytes) < count:
-            more = self.socket.recv(1 << 20)
-            assert more, "the server closed the connection"
-            self.bytes += more
-        part, self.bytes = self.bytes[:count], self.bytes[count:]
-        return part
+        view = types.SimpleNamespace(endpoint=host.netloc, connect=lambda: socket.create_connection((host.hostname, host.port), timeout=20))
+        super().__init__(view, headers=[f"Origin: http://{host.netloc}"])
+        assert self.status == 101
 
     def message(self):
         """Returns the next message: bytes of a frame, or the JSON of an event."""
-        first, length = self.take(2)
-        if length == 126:
-            length, = struct.unpack(">H", self.take(2))
-        elif length == 127:
-            length, = struct.unpack(">Q", self.take(8))
-        body = self.take(length)
-        return body if first & 15 == 2 else json.loads(body)
+        opcode, body = self.read()
+        return body if opcode == 2 else json.loads(body)
 
     def frame(self, last):
         """Requests a frame after frame `last`, and returns (number, base, moved rows, boxes, bytes)."""
-        text = json.dumps({"want": last}).encode()
-        mask = os.urandom(4)
-        self.socket.sendall(bytes([0x81, 0x80 | len(text)]) + mask + bytes(c ^ mask[i % 4] for i, c in enumerate(text)))
+        self.send(json.dumps({"want": last}).encode())
         while not isinstance(body := self.message(), bytes):
             pass
         magic, number, base, objects, shown, moved = struct.unpack("<6I", body[:24])
@@ -99,7 +82,7 @@ def test_frames_follow_the_scene():
         assert base == WHOLE
         known = shown.copy()
         origin = np.array(json.loads(get(view, "view.json"))["origin"])
-        page.socket.settimeout(0.05)
+        page.connection.settimeout(0.05)
         for _ in range(5):
             some = rng.choice(2000, 20, replace=False)
             boxes[some] += 0.01

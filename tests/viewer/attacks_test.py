@@ -26,17 +26,14 @@ class Access(InFolder):
                          f'127.0.0.1:{view.port}.evil.example', f'localhost.evil.example:{view.port}'):
                 for address in ('/', '/view.json', '/nothing'):
                     self.assertEqual(view.request(address, host=host)[0], 403, host)
-                with WebSocket(view, host=host or 'x') as web_socket:
-                    self.assertEqual(web_socket.status, 403, host)
+                self.assert_web_socket(view, 403, host=host or 'x')
             self.assertEqual(view.request('/view.json', host=f'localhost:{view.port}')[0], 200)
             for origin in ('null', '', 'http://evil.example', f'https://{view.endpoint}', 'http://127.0.0.1',
                            f'http://127.0.0.1:{view.port + 1}', f'http://localhost:{view.port}'):
                 self.assertEqual(view.request('/view.json', headers=[f'Origin: {origin}'])[0], 403, origin)
-                with WebSocket(view, headers=[f'Origin: {origin}']) as web_socket:
-                    self.assertEqual(web_socket.status, 403, origin)
+                self.assert_web_socket(view, 403, headers=[f'Origin: {origin}'])
             self.assertEqual(view.request('/view.json', headers=[f'Origin: http://{view.endpoint}'])[0], 200)
-            with WebSocket(view, headers=[f'Origin: http://{view.endpoint}']) as web_socket:
-                self.assertEqual(web_socket.status, 101)
+            self.assert_web_socket(view, 101, headers=[f'Origin: http://{view.endpoint}'])
             # Two headers, of which one is right.
             both = [f'Origin: http://{view.endpoint}', 'Origin: http://evil.example']
             self.assertIn(view.request('/view.json', headers=both[::-1])[0], (0, 400, 403))
@@ -48,8 +45,7 @@ class Access(InFolder):
             self.assertRegex(view.token, r'^[0-9a-f]{32}$')
             for address in ('/', '/view.json', '/?token=', '/?token=' + '0' * 32, '/?token=' + view.token[:-1]):
                 self.assertEqual(view.request(address)[0], 403, address)
-            with WebSocket(view) as web_socket:
-                self.assertEqual(web_socket.status, 403)
+            self.assert_web_socket(view, 403)
             status, headers, _ = view.request('/?token=' + view.token)
             self.assertEqual((status, headers['location']), (303, '/'))
             cookie = headers['set-cookie']
@@ -58,8 +54,7 @@ class Access(InFolder):
             pair = cookie.split(';')[0]
             for header in (f'Cookie: {pair}', f'Cookie: other=1; {pair}', f'Authorization: Bearer {view.token}'):
                 self.assertEqual(view.request('/view.json', headers=[header])[0], 200, header)
-                with WebSocket(view, headers=[header]) as web_socket:
-                    self.assertEqual(web_socket.status, 101)
+                self.assert_web_socket(view, 101, headers=[header])
             for header in (f'Cookie: {pair}x', f'Cookie: x{pair}', f'Authorization: {view.token}', 'Authorization: Bearer '):
                 self.assertEqual(view.request('/view.json', headers=[header])[0], 403, header)
             self.assertEqual(view.request('/view.json', headers=[f'Cookie: {pair}', 'Origin: http://evil.example'])[0], 403)
@@ -179,8 +174,7 @@ class WebSockets(InFolder):
 
     def test_other_paths(self):
         for path in ('/', '/view.json', '/socketx', '/x'):
-            with WebSocket(self.server, path=path) as web_socket:
-                self.assertEqual(web_socket.status, 404, path)
+            self.assert_web_socket(self.server, 404, path=path)
         for path in ('/scene/7/socket', '/a/b/socket'):
             with WebSocket(self.server, path=path) as web_socket:
                 self.assertIn(web_socket.status, (101, 404), path)

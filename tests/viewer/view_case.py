@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-from view_process import ViewProcess
+from view_process import ViewProcess, WebSocket
 
 
 def numbers(code, data):
@@ -38,6 +38,11 @@ class InFolder(unittest.TestCase):
 
     def view(self, *arguments, **options):
         return ViewProcess(self.program, arguments, **options)
+
+    def assert_web_socket(self, view, status, **options):
+        """Opens a WebSocket with options of WebSocket(), and checks the status of the answer."""
+        with WebSocket(view, **options) as web_socket:
+            self.assertEqual(web_socket.status, status, options)
 
     def run_program(self, *arguments, environment=None):
         return subprocess.run([self.program, *arguments], capture_output=True, text=True, timeout=20, check=False,

@@ -11,15 +11,15 @@ def _openssl(*words):
 
 
 class Authority:
-    """An authority in a temporary folder."""
+    """An authority in `folder`, or in a temporary folder."""
 
-    def __init__(self):
-        self._folder = tempfile.TemporaryDirectory(prefix="octopair_authority_")
-        self.folder = pathlib.Path(self._folder.name)
+    def __init__(self, folder=None):
+        self._folder = None if folder else tempfile.TemporaryDirectory(prefix="octopair_authority_")
+        self.folder = folder or pathlib.Path(self._folder.name)
         self._made = 0
         self._new_key("-x509", "-days", 30, "-keyout", self._file("authority.key"), "-out", self.path(),
                       "-subj", "/CN=authority")
-        self.server = self._sign("server", "/CN=server", "DNS:localhost,IP:127.0.0.1")
+        self.server = self.sign("server", "/CN=server", "DNS:localhost,IP:127.0.0.1")
 
     def path(self):
         """Returns the file with the authority's certificate."""
@@ -35,8 +35,8 @@ class Authority:
     def _new_key(self, *words):
         _openssl("req", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", *words)
 
-    def _sign(self, name, subject, alternative_names):
-        """Returns (certificate file, key file)."""
+    def sign(self, name, subject, alternative_names):
+        """Makes a certificate. Returns (certificate file, key file)."""
         certificate, key, request = (self._file(f"{name}.{ending}") for ending in ("pem", "key", "csr"))
         self._new_key("-keyout", key, "-out", request, "-subj", subject)
         extensions = self._file(f"{name}.names")
@@ -57,5 +57,5 @@ class Authority:
         pair = (None, None)
         if subject is not None:
             self._made += 1
-            pair = [file.read_bytes() for file in self._sign(f"client{self._made}", subject, alternative_names)]
+            pair = [file.read_bytes() for file in self.sign(f"client{self._made}", subject, alternative_names)]
         return grpc.ssl_channel_credentials(self.path().read_bytes(), pair[1], pair[0])

@@ -17,7 +17,7 @@ def frame(kind, payload=b"", flags=0, stream=0):
     return struct.pack(">I", len(payload))[1:] + bytes([kind, flags]) + struct.pack(">I", stream) + payload
 
 
-def _length(number):
+def encoded_length(number):
     """Encodes the length of a literal (RFC 7541, 5.1, a prefix of 7 bits)."""
     if number < 127:
         return bytes([number])
@@ -31,7 +31,7 @@ def _length(number):
 
 def header(name, value):
     """Encodes a header as a literal without a table entry."""
-    return b"\0" + _length(len(name)) + name.encode() + _length(len(value)) + value.encode()
+    return b"\0" + encoded_length(len(name)) + name.encode() + encoded_length(len(value)) + value.encode()
 
 
 def call_head(stream, path, token=None, flags=END_HEADERS, **more):

@@ -1,41 +1,19 @@
 """HTTP/2 connections for tests of attacks: sends single frames over TLS or TCP, from a chosen source address."""
 
+import pathlib
 import socket
 import ssl
 import struct
+import sys
 import time
 
-DATA, HEADERS, RST_STREAM, SETTINGS, PING, GOAWAY, CONTINUATION = 0, 1, 3, 4, 6, 7, 9
-END_STREAM, ACK, END_HEADERS = 1, 1, 4
-PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
-
-
-def frame(kind, flags, stream, payload=b""):
-    """Returns an HTTP/2 frame (RFC 9113)."""
-    return struct.pack(">I", len(payload))[1:] + struct.pack(">BBI", kind, flags, stream) + payload
-
-
-def integer(value, prefix_bits, first=0):
-    """Returns an integer in HPACK's form (RFC 7541, section 5.1)."""
-    most = (1 << prefix_bits) - 1
-    if value < most:
-        return bytes([first | value])
-    out = bytearray([first | most])
-    value -= most
-    while value >= 128:
-        out.append(value % 128 + 128)
-        value //= 128
-    return bytes(out + bytes([value]))
-
-
-def field(name, value):
-    """Returns a header field in HPACK's form: literal, not indexed, without Huffman code."""
-    return b"\0" + integer(len(name), 7) + name.encode() + integer(len(value), 7) + value.encode()
+sys.path.append(str(pathlib.Path(__file__).parents[1] / "foreign"))
+from http2 import CONTINUATION, DATA, END_HEADERS, END_STREAM, HEADERS, PREFACE, RESET, SETTINGS, encoded_length, frame, header  # noqa: E402
 
 
 def call_header(path, token):
     """Returns the header of a gRPC call."""
-    return b"".join(field(name, value) for name, value in [
+    return b"".join(header(name, value) for name, value in [
         (":method", "POST"), (":scheme", "https"), (":path", path), (":authority", "localhost"),
         ("te", "trailers"), ("content-type", "application/grpc"), ("authorization", "Bearer " + token)])
 
@@ -56,7 +34,7 @@ class Connection:
 
     def start(self):
         """Starts HTTP/2."""
-        self.socket.sendall(PREFACE + frame(SETTINGS, 0, 0))
+        self.socket.sendall(PREFACE + frame(SETTINGS))
 
     def send(self, data):
         """Sends bytes. Returns whether the connection is still open. Drops what has arrived."""
@@ -88,8 +66,8 @@ class Connection:
 
     def call(self, path, token, stream=1):
         """Makes a call with an empty message. Returns the first block of the answer's header, or None without an answer in 10 s."""
-        header = frame(HEADERS, END_HEADERS, stream, call_header(path, token))
-        self.socket.sendall(header + frame(DATA, END_STREAM, stream, EMPTY_MESSAGE))
+        head = frame(HEADERS, call_header(path, token), END_HEADERS, stream)
+        self.socket.sendall(head + frame(DATA, EMPTY_MESSAGE, END_STREAM, stream))
         block = None
         for kind, flags, number, payload in self.frames(10):
             if number == stream and kind == HEADERS and block is None:
@@ -122,8 +100,8 @@ class Connection:
 
 # Headers that never end, as first fragment and further fragments of 16,000 bytes.
 ENDLESS_HEADERS = {
-    "a field whose name has 2,000,000,000 bytes": (b"\0" + integer(2_000_000_000, 7) + b"x" * 16000, b"x" * 16000),
-    "fields of 200 bytes": (field("a" * 97, "b" * 100) * 80, field("a" * 97, "b" * 100) * 80),
+    "a field whose name has 2,000,000,000 bytes": (b"\0" + encoded_length(2_000_000_000) + b"x" * 16000, b"x" * 16000),
+    "fields of 200 bytes": (header("a" * 97, "b" * 100) * 80, header("a" * 97, "b" * 100) * 80),
 }
 
 
@@ -131,11 +109,11 @@ def send_endless_header(connection, stream, fragments, most_bytes, seconds):
     """Sends HEADERS without END_HEADERS and then CONTINUATION frames. `fragments`: an item of ENDLESS_HEADERS.
     Returns the number of bytes sent until the connection was cut, or None if it was not."""
     first, further = fragments
-    if not connection.send(frame(HEADERS, 0, stream, first)):
+    if not connection.send(frame(HEADERS, first, 0, stream)):
         return 0
     sent, end = len(first), time.monotonic() + seconds
     while sent < most_bytes and time.monotonic() < end:
-        if not connection.send(frame(CONTINUATION, 0, stream, further)):
+        if not connection.send(frame(CONTINUATION, further, 0, stream)):
             return sent
         sent += len(further)
     return None
@@ -143,7 +121,7 @@ def send_endless_header(connection, stream, fragments, most_bytes, seconds):
 
 def reset_rapidly(port, authority, source, token, seconds):
     """Starts calls and resets each at once, for some seconds. Connects again when it is cut. Returns the number of calls."""
-    calls, end, header = 0, time.monotonic() + seconds, call_header("/octopair.v1.Octopair/Status", token)
+    calls, end, fields = 0, time.monotonic() + seconds, call_header("/octopair.v1.Octopair/Status", token)
     while time.monotonic() < end:
         try:
             connection = Connection(port, authority, source)
@@ -153,7 +131,7 @@ def reset_rapidly(port, authority, source, token, seconds):
             continue
         stream = 1
         while time.monotonic() < end:
-            batch = b"".join(frame(HEADERS, END_HEADERS, number, header) + frame(RST_STREAM, 0, number, b"\0\0\0\x08")
+            batch = b"".join(frame(HEADERS, fields, END_HEADERS, number) + frame(RESET, b"\0\0\0\x08", 0, number)
                              for number in range(stream, stream + 100, 2))
             if not connection.send(batch):
                 break

@@ -23,10 +23,11 @@ import tempfile
 import threading
 import time
 import unittest
-import urllib.request
 
 sys.dont_write_bytecode = True
 import attacks  # noqa: E402
+import certificates  # noqa: E402
+import metrics  # noqa: E402
 
 CONFIGURATIONS = pathlib.Path(__file__).resolve().parents[3] / "packaging/proxy"
 PACKAGES = {"nginx": "nginx-light", "haproxy": "haproxy", "openssl": "openssl"}
@@ -64,15 +65,8 @@ def write_secret(path, text):
 
 def make_certificates():
     """Makes an authority, and certificates for the server and for a client (docs/server.md)."""
-    openssl = find_program("openssl")
-    key = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"]
-    must_run(openssl, "req", "-x509", *key, "-days", 2, "-keyout", files / "authority.key", "-out", files / "authority.pem",
-             "-subj", "/CN=authority")
-    (files / "names").write_text("subjectAltName=DNS:localhost,IP:127.0.0.1\n")
-    for name in ["server", "client"]:
-        must_run(openssl, "req", *key, "-keyout", files / f"{name}.key", "-out", files / f"{name}.csr", "-subj", f"/CN={name}")
-        must_run(openssl, "x509", "-req", "-in", files / f"{name}.csr", "-CA", files / "authority.pem", "-CAkey",
-                 files / "authority.key", "-CAcreateserial", "-days", 2, "-extfile", files / "names", "-out", files / f"{name}.pem")
+    find_program("openssl")
+    certificates.Authority(files).sign("client", "/CN=client", "DNS:localhost,IP:127.0.0.1")
     write_secret(files / "server-and-key.pem", (files / "server.pem").read_text() + (files / "server.key").read_text())
 
 
@@ -233,8 +227,7 @@ class Stack:
         return connection
 
     def metric(self, name):
-        with urllib.request.urlopen(f"http://127.0.0.1:{self.metrics_port}/metrics", timeout=10) as page:
-            found = re.search(rf"^{re.escape(name)} (\S+)$", page.read().decode(), re.MULTILINE)
+        found = re.search(rf"^{re.escape(name)} (\S+)$", metrics.page(self.metrics_port), re.MULTILINE)
         return float(found.group(1)) if found else 0.0
 
 
