@@ -8,59 +8,17 @@
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
 #include "support/calls.hpp"
+#include "support/cancel_time.hpp"
 #include "support/errors.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
-
-constexpr milliseconds patience(sanitized ? 3000 : 200);
 
 class Cancel : public ::testing::TestWithParam<unsigned> {};
 INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u, 8u));
-
-/// Runs `call(stop_token)` and requests a stop after `delay`. Returns the time until Error{cancelled}, or nothing if
-/// the call ended before the request.
-template <typename Call>
-std::optional<Clock::duration> time_to_cancel(const Call& call, milliseconds delay) {
-    std::stop_source source;
-    Clock::time_point asked = Clock::time_point::max();
-    std::jthread stopper([&] {
-        std::this_thread::sleep_for(delay);
-        asked = Clock::now();
-        source.request_stop();
-    });
-    bool finished = false;
-    try {
-        call(source.get_token());
-        finished = true;
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
-    }
-    const Clock::time_point ended = Clock::now();
-    stopper.join();
-    if (finished) return std::nullopt;
-    return ended - asked;
-}
-
-/// Expects Error{cancelled} in time, in at least one of a few attempts: a machine busy with other work delays any
-/// thread. With `may_finish`, a call may also finish before the request.
-template <typename Call>
-void expect_cancelled(const Call& call, milliseconds delay, bool may_finish) {
-    std::optional<Clock::duration> took;
-    for (int attempt = 0; attempt < 3; ++attempt) {
-        took = time_to_cancel(call, delay);
-        if (!took || *took <= patience) break;
-    }
-    if (!took) {
-        EXPECT_TRUE(may_finish) << "finished despite the stop request";
-    } else {
-        EXPECT_LE(*took, patience) << std::chrono::duration<double>(*took).count() << " s";
-    }
-}
 
 /// Cancels a count and a stream of the pairs of `boxes` in each order. Expects that the engine works afterwards.
 void expect_all_cancelled(const std::vector<Box3f>& boxes, unsigned threads, milliseconds delay, bool may_finish) {

@@ -21,11 +21,6 @@ protected:
     std::vector<Box3f> scene() const { return samples::make_scene(GetParam(), expected().objects, 1); }
 };
 
-std::vector<std::string> sample_kinds() {
-    const auto kinds = samples::scene_kinds();
-    return {kinds.begin(), kinds.end()};
-}
-
 TEST_P(EngineHashes, AscendingIsAsPinned) {
     const auto boxes = scene();
     for (const unsigned threads : {1u, 2u, 3u, 8u, 16u}) {
@@ -60,9 +55,9 @@ TEST_P(EngineHashes, OctalIsTheSameForAnyThreads) {
     EXPECT_EQ(hash_of(baselines::ascending(first)), expected().pair_hash);
 }
 
-INSTANTIATE_TEST_SUITE_P(, EngineHashes, ::testing::ValuesIn(sample_kinds()), param_name);
+INSTANTIATE_TEST_SUITE_P(, EngineHashes, ::testing::ValuesIn(sample_kind_names()), param_name);
 
-TEST(EngineHashesTable, HasEveryKind) { EXPECT_EQ(std::size(pinned_scenes), sample_kinds().size()); }
+TEST(EngineHashesTable, HasEveryKind) { EXPECT_EQ(std::size(pinned_scenes), sample_kind_names().size()); }
 
 }  // namespace
 }  // namespace octopair::test

@@ -167,6 +167,13 @@ inline std::string fault_of_mesh(const io::PlainMesh& mesh) {
                : "faces do not end where corners end";
 }
 
+inline std::string fault_of_mesh(const std::vector<io::PlainMesh>& meshes) {
+    for (const io::PlainMesh& mesh : meshes) {
+        if (std::string wrong = fault_of_mesh(mesh); !wrong.empty()) return wrong;
+    }
+    return "";
+}
+
 /// Calls a reader. An Error must be one line that begins with `file`. Returns what is wrong; empty if nothing is.
 template <typename Read>
 std::string fault_of_reading(std::string_view file, const Read& read) {

@@ -36,11 +36,6 @@ protected:
     const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
 };
 
-std::vector<std::string> sample_kinds() {
-    const auto kinds = samples::scene_kinds();
-    return {kinds.begin(), kinds.end()};
-}
-
 TEST_P(RankHashes, AreThoseOfThreads) {
     const bool many = pinned_.pairs > 300'000;
     if (many && sanitized) GTEST_SKIP() << "too many pairs for a sanitizer";
@@ -60,7 +55,7 @@ TEST_P(RankHashes, AreThoseOfThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kinds()), param_name);
+INSTANTIATE_TEST_SUITE_P(, RankHashes, ::testing::ValuesIn(sample_kind_names()), param_name);
 
 TEST(Ranks, ShareTheWork) {
     const std::vector<Box3f> boxes = samples::make_scene("uniform", 100'000, 1);

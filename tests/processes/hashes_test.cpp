@@ -41,11 +41,6 @@ protected:
     const std::vector<Box3f> boxes_ = samples::make_scene(GetParam(), pinned_.objects, 1);
 };
 
-std::vector<std::string> sample_kinds() {
-    const auto kinds = samples::scene_kinds();
-    return {kinds.begin(), kinds.end()};
-}
-
 TEST_P(WorkerHashes, AreThoseOfThreads) {
     const auto local = make_local_engine(2);
     const Found octal = listed(*local, Order::octal);
@@ -63,7 +58,7 @@ TEST_P(WorkerHashes, AreThoseOfThreads) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, WorkerHashes, ::testing::ValuesIn(sample_kinds()), param_name);
+INSTANTIATE_TEST_SUITE_P(, WorkerHashes, ::testing::ValuesIn(sample_kind_names()), param_name);
 
 }  // namespace
 }  // namespace octopair::test

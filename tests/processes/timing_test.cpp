@@ -10,6 +10,7 @@
 #include "processes/asked.hpp"
 #include "processes/fault_plan.hpp"
 #include "processes/leftovers.hpp"
+#include "support/cancel_time.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
@@ -43,43 +44,13 @@ TEST_F(WorkerTiming, LostWorkersAreReplacedWithinASecond) {
     }
 }
 
-constexpr milliseconds cancel_patience(sanitized ? 3000 : 200);
-
-/// Returns the time from a stop request to the end of the call, or nothing if the call ended before the request.
-std::optional<Clock::duration> time_to_cancel(Engine& engine, const Scene& scene, const Asked& asked,
-                                              milliseconds delay) {
-    std::stop_source source;
-    Clock::time_point begin;
-    std::jthread stopper([&] {
-        std::this_thread::sleep_for(delay);
-        begin = Clock::now();
-        source.request_stop();
-    });
-    bool finished = false;
-    try {
-        (void)ask(engine, scene, asked, source.get_token());
-        finished = true;
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::cancelled) << error.what();
-    }
-    const Clock::time_point end = Clock::now();
-    stopper.join();
-    return finished ? std::nullopt : std::optional(end - begin);
-}
-
 class WorkerCancel : public WorkerTiming, public ::testing::WithParamInterface<const char*> {
 protected:
-    void expect_cancelled(Engine& engine, const Scene& scene, const Asked& asked) {
+    void expect_call_cancelled(Engine& engine, const Scene& scene, const Asked& asked) {
         for (const int delay : {0, 3, 15, 40, 90, 200}) {
             SCOPED_TRACE(asked.describe() + ", after " + std::to_string(delay) + " ms");
-            std::optional<Clock::duration> took;
-            // A machine that is busy with other work may delay any thread.
-            for (int attempt = 0; attempt < 3; ++attempt) {
-                took = time_to_cancel(engine, scene, asked, milliseconds(delay));
-                if (!took || *took <= cancel_patience) break;
-            }
-            EXPECT_LE(took.value_or(milliseconds(0)), cancel_patience)
-                << std::chrono::duration<double>(took.value_or(milliseconds(0))).count() << " s";
+            expect_cancelled([&](std::stop_token stop) { (void)ask(engine, scene, asked, stop); }, milliseconds(delay),
+                             true);
         }
     }
 };
@@ -92,7 +63,7 @@ TEST_P(WorkerCancel, IsSoonDone) {
         if (crowd && asked.how == How::list) continue;
         for (const bool join : {false, true}) {
             asked.join = join;
-            expect_cancelled(*engine, scene, asked);
+            expect_call_cancelled(*engine, scene, asked);
         }
         EXPECT_EQ(ask(*engine, few, asked), ask(*make_local_engine(1), few, asked));
     }

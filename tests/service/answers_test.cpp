@@ -74,12 +74,7 @@ TEST_P(ServedHashes, AreThoseOfThreads) {
     }
 }
 
-std::vector<std::string> sample_kinds() {
-    const auto kinds = samples::scene_kinds();
-    return {kinds.begin(), kinds.end()};
-}
-
-INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kinds()), param_name);
+INSTANTIATE_TEST_SUITE_P(, ServedHashes, ::testing::ValuesIn(sample_kind_names()), param_name);
 
 /// Returns the answer to a call with the objects of a case. The count and the truncation come from the call's summary.
 Answer answer_of(Engine& engine, const Case& a_case, const Asked& asked) {

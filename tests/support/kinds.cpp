@@ -17,12 +17,19 @@ using samples::RandomStream;
 template <typename Real>
 using MakeBox = Box<Real> (*)(RandomStream&);
 
-template <typename Real>
-Box<Real> span_box(const double (&low)[3], const double (&extent)[3]) {
+/// An interval on an axis.
+struct Span {
+    double low, extent;
+};
+
+/// Makes a box of the spans that `span_on` returns for the axes.
+template <typename Real, typename SpanOn>
+Box<Real> span_box(const SpanOn& span_on) {
     Box<Real> box;
     for (int axis = 0; axis < 3; ++axis) {
-        box.min[axis] = Real(low[axis]);
-        box.max[axis] = std::max(Real(low[axis] + extent[axis]), box.min[axis]);
+        const Span span = span_on(axis);
+        box.min[axis] = Real(span.low);
+        box.max[axis] = std::max(Real(span.low + span.extent), box.min[axis]);
     }
     return box;
 }
@@ -63,12 +70,10 @@ Box<Real> collapsed(RandomStream& random) {
 template <typename Real>
 Box<Real> giants(RandomStream& random) {
     const bool dust = random.below(8) == 0;
-    double low[3], extent[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = dust ? random.uniform() : random.uniform(0, 0.05);
-        extent[axis] = dust ? random.uniform(0, 0.01) : random.uniform(0.9, 1);
-    }
-    return span_box<Real>(low, extent);
+    return span_box<Real>([&](int) {
+        return Span{dust ? random.uniform() : random.uniform(0, 0.05),
+                    dust ? random.uniform(0, 0.01) : random.uniform(0.9, 1)};
+    });
 }
 
 /// Coordinates k / 2^n, which are borders of octants, or the next number above or below.
@@ -139,23 +144,17 @@ Box<Real> largest(RandomStream& random) {
 /// A world of size 64, at 10 or -10 million on every axis: in float32 all coordinates are whole numbers.
 template <typename Real>
 Box<Real> far_origin(RandomStream& random) {
-    double low[3], extent[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = (axis == 1 ? -1e7 : 1e7) + random.uniform(0, 64);
-        extent[axis] = random.uniform(0, 8);
-    }
-    return span_box<Real>(low, extent);
+    return span_box<Real>([&](int axis) {
+        return Span{(axis == 1 ? -1e7 : 1e7) + random.uniform(0, 64), random.uniform(0, 8)};
+    });
 }
 
 /// Sizes over 6 decades, independent on each axis.
 template <typename Real>
 Box<Real> decades(RandomStream& random) {
-    double low[3], extent[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = random.uniform();
-        extent[axis] = random.uniform(1, 2) / double(1u << random.below(21));
-    }
-    return span_box<Real>(low, extent);
+    return span_box<Real>([&](int) {
+        return Span{random.uniform(), random.uniform(1, 2) / double(1u << random.below(21))};
+    });
 }
 
 /// One object in 40 is a point far away, at up to a quarter of the largest number. All others are near the unit cube.
@@ -165,24 +164,18 @@ Box<Real> outliers(RandomStream& random) {
         const Real far = Real(random.uniform(-1, 1)) * std::numeric_limits<Real>::max() / 4;
         return {{far, far, far}, {far, far, far}};
     }
-    double low[3], extent[3];
-    for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = random.uniform();
-        extent[axis] = random.uniform(0, 0.2);
-    }
-    return span_box<Real>(low, extent);
+    return span_box<Real>([&](int) { return Span{random.uniform(), random.uniform(0, 0.2)}; });
 }
 
 /// Thin crossings of every shape: on each axis a box is a point, thin, or as wide as the world.
 template <typename Real>
 Box<Real> crossings(RandomStream& random) {
-    double low[3], extent[3];
-    for (int axis = 0; axis < 3; ++axis) {
+    return span_box<Real>([&](int) {
         const auto shape = random.below(3);
-        low[axis] = shape == 2 ? random.uniform(0, 0.02) : random.uniform();
-        extent[axis] = shape == 0 ? 0 : shape == 1 ? random.uniform(0, 0.02) : random.uniform(0.9, 0.98);
-    }
-    return span_box<Real>(low, extent);
+        const double low = shape == 2 ? random.uniform(0, 0.02) : random.uniform();
+        const double extent = shape == 0 ? 0 : shape == 1 ? random.uniform(0, 0.02) : random.uniform(0.9, 0.98);
+        return Span{low, extent};
+    });
 }
 
 struct OwnKind {
@@ -227,9 +220,13 @@ std::vector<Box<Real>> make_own(MakeBox<Real> make, std::uint64_t objects, std::
 
 }  // namespace
 
+std::vector<std::string> sample_kind_names() {
+    const auto kinds = samples::scene_kinds();
+    return {kinds.begin(), kinds.end()};
+}
+
 std::vector<std::string> all_kind_names() {
-    std::vector<std::string> names;
-    for (const auto name : samples::scene_kinds()) names.emplace_back(name);
+    std::vector<std::string> names = sample_kind_names();
     for (const OwnKind& kind : own_kinds) names.emplace_back(kind.name);
     return names;
 }

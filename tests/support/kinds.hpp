@@ -11,7 +11,9 @@
 
 namespace octopair::test {
 
-/// Returns the names of all kinds of samples, then "lattice", "duplicates", "segments" and so on (kinds.cpp).
+/// Returns the names of the kinds of samples.
+std::vector<std::string> sample_kind_names();
+/// Returns sample_kind_names(), then "lattice", "duplicates", "segments" and so on (kinds.cpp).
 std::vector<std::string> all_kind_names();
 
 /// Makes valid boxes. A pure function of its arguments.

@@ -9,7 +9,6 @@
 #include "service/detached/detached_server.hpp"
 #include "service/protocol/octopair.grpc.pb.h"
 #include "service/protocol/status.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {

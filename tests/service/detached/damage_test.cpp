@@ -1,7 +1,6 @@
 // Tests damaged files of the state folder: the affected job reports the file, and all other jobs are served.
 
 #include "service/detached/detached_server.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {

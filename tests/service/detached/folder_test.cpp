@@ -2,7 +2,6 @@
 #include <sys/stat.h>
 
 #include "service/detached/detached_server.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {

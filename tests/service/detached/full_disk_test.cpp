@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "service/detached/detached_server.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {
@@ -24,62 +23,67 @@ std::string mount_small_disk(const std::string& folder) {
     return std::string("this process may not mount: ") + std::strerror(errno);
 }
 
-TEST(FullDisk, RefusesWhatDoesNotFit) {
-    const TemporaryDirectory folder;
-    const std::string disk = folder.file("disk");
-    if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
-    {
-        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
-        const auto client = server.client();
-        const auto boxes = make_boxes("uniform", 50'000, 1), many = make_boxes("uniform", 200'000, 1);
-        const Work work(Objects{boxes});
-        const auto refused = [&](const std::vector<Box3f>& objects) {
-            expect_error(ErrorCode::io_failed, "No space left", [&] { client->submit({objects}); });
-        };
-        refused(many);
-        const std::vector<Box3f> heap(2000);  // a small input with a result of 16 MB
-        const std::string too_large = client->submit({heap});
-        const std::string status = failure_of(*client, too_large, ErrorCode::io_failed);
-        EXPECT_EQ(status, "the result does not fit on the server's disk, which has 3145728 bytes in all");
-        const std::string id = submit(*client, work);
-        expect_result(*client, id, work);
-        refused(many);
-        expect_result(*client, id, work);
-        client->release(id);
-        expect_served(*client, work);
+/// A server whose state folder is on a disk of its own.
+class FullDisk : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (const std::string why = mount_small_disk(disk_); !why.empty()) GTEST_SKIP() << why;
+        server_.emplace([&](service::ServerOptions& options) { options.state_folder = disk_; });
+        client_ = server_->client();
     }
-    EXPECT_EQ(::umount(disk.c_str()), 0);
+    void TearDown() override {
+        if (!server_) return;
+        client_.reset();
+        server_.reset();
+        EXPECT_EQ(::umount(disk_.c_str()), 0);
+    }
+
+    const TemporaryDirectory folder_;
+    const std::string disk_ = folder_.file("disk");
+    std::optional<DetachedServer> server_;
+    std::unique_ptr<JobClient> client_;
+};
+
+TEST_F(FullDisk, RefusesWhatDoesNotFit) {
+    const auto boxes = make_boxes("uniform", 50'000, 1), many = make_boxes("uniform", 200'000, 1);
+    const Work work(Objects{boxes});
+    const auto refused = [&](const std::vector<Box3f>& objects) {
+        expect_error(ErrorCode::io_failed, "No space left", [&] { client_->submit({objects}); });
+    };
+    refused(many);
+    const std::vector<Box3f> heap(2000);  // a small input with a result of 16 MB
+    const std::string too_large = client_->submit({heap});
+    const std::string status = failure_of(*client_, too_large, ErrorCode::io_failed);
+    EXPECT_EQ(status, "the result does not fit on the server's disk, which has 3145728 bytes in all");
+    const std::string id = submit(*client_, work);
+    expect_result(*client_, id, work);
+    refused(many);
+    expect_result(*client_, id, work);
+    client_->release(id);
+    expect_served(*client_, work);
 }
 
 /// A job whose result finds no room runs again when there is. Its readers receive each pair once.
-TEST(FullDisk, WaitsForRoomForAResult) {
-    const TemporaryDirectory folder;
-    const std::string disk = folder.file("disk");
-    if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
-    {
-        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
-        const auto client = server.client();
-        const std::string filler = disk + "/filler";
-        write_file(filler, std::string(2'000'000, 'x'));
-        const std::vector<Box3f> heap(600);  // its result has 1.4 MB
-        const Work work(Objects{heap});
-        const std::string id = submit(*client, work);
-        ASSERT_TRUE(comes_true([&] { return client->status(id).waits_for_room; }));
-        EXPECT_EQ(int(client->status(id).state), int(JobState::queued));
-        std::vector<Pair> read;
-        std::jthread reader([&] { read = pairs_there(*client, id); });
-        const Work small(Objects{std::span(heap).first(30), {}});
-        const std::string other = submit(*client, small);
-        EXPECT_TRUE(same_bytes(pairs_there(*client, other), pairs_here(small))) << "later jobs do not wait";
-        std::filesystem::remove(filler);
-        reader.join();
-        EXPECT_TRUE(same_bytes(read, pairs_here(work)));
-        EXPECT_FALSE(client->status(id).waits_for_room);
-        EXPECT_TRUE(has_text(server.log(), "job " + id + ": waits for room for its result: "));
-        EXPECT_TRUE(has_text(server.log(), "No space left"));
-        EXPECT_FALSE(has_text(server.log(), disk)) << "messages do not name the server's folders";
-    }
-    EXPECT_EQ(::umount(disk.c_str()), 0);
+TEST_F(FullDisk, WaitsForRoomForAResult) {
+    const std::string filler = disk_ + "/filler";
+    write_file(filler, std::string(2'000'000, 'x'));
+    const std::vector<Box3f> heap(600);  // its result has 1.4 MB
+    const Work work(Objects{heap});
+    const std::string id = submit(*client_, work);
+    ASSERT_TRUE(comes_true([&] { return client_->status(id).waits_for_room; }));
+    EXPECT_EQ(int(client_->status(id).state), int(JobState::queued));
+    std::vector<Pair> read;
+    std::jthread reader([&] { read = pairs_there(*client_, id); });
+    const Work small(Objects{std::span(heap).first(30), {}});
+    const std::string other = submit(*client_, small);
+    EXPECT_TRUE(same_bytes(pairs_there(*client_, other), pairs_here(small))) << "later jobs do not wait";
+    std::filesystem::remove(filler);
+    reader.join();
+    EXPECT_TRUE(same_bytes(read, pairs_here(work)));
+    EXPECT_FALSE(client_->status(id).waits_for_room);
+    EXPECT_TRUE(has_text(server_->log(), "job " + id + ": waits for room for its result: "));
+    EXPECT_TRUE(has_text(server_->log(), "No space left"));
+    EXPECT_FALSE(has_text(server_->log(), disk_)) << "messages do not name the server's folders";
 }
 
 /// Fills the disk of a folder, but for this number of blocks of 4 KiB. Returns the path of the file.
@@ -95,26 +99,18 @@ std::string fill(const std::string& disk, std::uint64_t free_blocks) {
 }
 
 /// Jobs that found no room for small results run as soon as the disk has room for these, though it is nearly full.
-TEST(FullDisk, DoesNotMakeSmallResultsWaitForMuchRoom) {
-    const TemporaryDirectory folder;
-    const std::string disk = folder.file("disk");
-    if (const std::string why = mount_small_disk(disk); !why.empty()) GTEST_SKIP() << why;
-    {
-        const DetachedServer server([&](service::ServerOptions& options) { options.state_folder = disk; });
-        const auto client = server.client();
-        const std::vector<Box3f> heap(200);  // its input has 5 KB, its result 159 KB
-        const Work work(Objects{heap});
-        constexpr std::uint64_t jobs = 8, blocks_of_input = 3, blocks_of_result = 42;
-        const std::string filler = fill(disk, jobs * blocks_of_input);
-        std::vector<std::string> ids;
-        for (std::uint64_t i = 0; i < jobs; ++i) {
-            ids.push_back(submit(*client, work));
-            ASSERT_TRUE(comes_true([&] { return client->status(ids.back()).waits_for_room; })) << i;
-        }
-        std::filesystem::resize_file(filler, std::filesystem::file_size(filler) - jobs * blocks_of_result * 4096);
-        for (const std::string& id : ids) expect_result(*client, id, work);
+TEST_F(FullDisk, DoesNotMakeSmallResultsWaitForMuchRoom) {
+    const std::vector<Box3f> heap(200);  // its input has 5 KB, its result 159 KB
+    const Work work(Objects{heap});
+    constexpr std::uint64_t jobs = 8, blocks_of_input = 3, blocks_of_result = 42;
+    const std::string filler = fill(disk_, jobs * blocks_of_input);
+    std::vector<std::string> ids;
+    for (std::uint64_t i = 0; i < jobs; ++i) {
+        ids.push_back(submit(*client_, work));
+        ASSERT_TRUE(comes_true([&] { return client_->status(ids.back()).waits_for_room; })) << i;
     }
-    EXPECT_EQ(::umount(disk.c_str()), 0);
+    std::filesystem::resize_file(filler, std::filesystem::file_size(filler) - jobs * blocks_of_result * 4096);
+    for (const std::string& id : ids) expect_result(*client_, id, work);
 }
 
 class FullState : public ::testing::Test {

@@ -11,7 +11,6 @@
 
 #include "base/test_hooks.hpp"
 #include "service/detached/detached_server.hpp"
-#include "support/compare.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {

@@ -1,7 +1,6 @@
 // Tests jobs that are submitted and collected. Every call finds the pairs of the local engine, and each id runs only
 // one job.
 #include "service/detached/detached_server.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {

@@ -14,7 +14,6 @@
 #include "base/descriptor.hpp"
 #include "service/detached/detached_server.hpp"
 #include "service/server_program.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {

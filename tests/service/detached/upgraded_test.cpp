@@ -5,7 +5,6 @@
 #include "service/protocol/job_hash.hpp"
 #include "service/protocol/job_spec.hpp"
 #include "service/server/store/state_format.hpp"
-#include "support/compare.hpp"
 
 namespace octopair::test {
 namespace {

@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "service/detached/detached_server.hpp"
-#include "support/compare.hpp"
 #include "support/scale.hpp"
 
 namespace octopair::test {
