@@ -113,7 +113,7 @@ TEST(BaselinesPaper, TheBestLevelIsAPossibleOne) {
         EXPECT_GE(level, 1u) << objects;
         EXPECT_LE(level, OctalCode::max_level) << objects;
     }
-    EXPECT_EQ(best_paper_level(samples::make_scene("uniform", 3000, 1), {}, requested_stop()), 4u);
+    EXPECT_EQ(best_paper_level(samples::make_scene("uniform", 3000, 1), {}, test::requested_stop()), 4u);
 }
 
 TEST(BaselinesPaper, AnObjectThatFillsTheWorldHasOneCode) {
