@@ -85,6 +85,19 @@ def complaints_of(path, parts):
                 yield number, f"{what}: {line.strip()[:80]}"
 
 
+def absent_failures(root):
+    """Yields the lines of tests/unreached_failures.txt that name code which no source has."""
+    listed = root / "tests" / "unreached_failures.txt"
+    lines = listed.read_text().splitlines() if listed.exists() else []
+    for number, line in enumerate(lines, 1):
+        if not line or line.startswith("#"):
+            continue
+        name, _, code = line.partition(": ")
+        source = root / name
+        if not source.is_file() or code not in map(str.strip, source.read_text().splitlines()):
+            yield listed, number, f"{name} has no such line"
+
+
 def main():
     root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
     count = wrong = 0
@@ -93,6 +106,9 @@ def main():
         for line, what in complaints_of(path, parts):
             wrong += 1
             print(f"{path.relative_to(root)}:{line}: {what}")
+    for path, line, what in absent_failures(root):
+        wrong += 1
+        print(f"{path.relative_to(root)}:{line}: {what}")
     if not wrong:
         print(f"{count} files follow the rules")
     return 1 if wrong or count == 0 else 0
