@@ -1,14 +1,13 @@
 // Checks of input boxes, and functions that copy boxes or round them outward, many at once.
-// Start here to change what NaN and infinity do.
 #pragma once
 
 #include <array>
 #include <cfloat>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "base/private_export.hpp"
+#include "boxes/box_check.hpp"
 #include "boxes/entry.hpp"
 #include "boxes/pair_rule.hpp"
 #include "geometry/rounding.hpp"
@@ -16,19 +15,6 @@
 #include "octopair/pose.hpp"
 
 namespace octopair {
-
-/// True if min <= max on each axis and all numbers are finite.
-template <typename Real>
-bool is_box(const Box<Real>& box) {
-    bool good = true;
-    for (int axis = 0; axis < 3; ++axis) {
-        // Also false for NaN. |value| <= max is false for infinities.
-        good &= box.min[axis] <= box.max[axis];
-        good &= std::abs(box.min[axis]) <= std::numeric_limits<Real>::max();
-        good &= std::abs(box.max[axis]) <= std::numeric_limits<Real>::max();
-    }
-    return good;
-}
 
 template <typename Real>
 Box3d wide(const Box<Real>& box) {
@@ -43,8 +29,6 @@ bool overlap(const Box<Real>& a, const Box<Real>& b) {
     for (int axis = 0; axis < 3; ++axis) all &= a.min[axis] <= b.max[axis] && b.min[axis] <= a.max[axis];
     return all;
 }
-
-inline bool is_padding(double value) { return value >= 0 && value <= DBL_MAX; }
 
 /// Moves boxes to an origin, widens them, and rounds them outward to float32.
 struct OutwardRounding {

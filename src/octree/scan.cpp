@@ -219,7 +219,7 @@ private:
         return crowd.ids.empty() ? EntryList(crowd.whole) : EntryList(context_.rule, crowd.ids);
     }
 
-    /// Collects whole entries, unless they are so many that ids take their place.
+    /// Collects the entries of a part with their bounds, or as ids alone if they are more than `max_whole_crowd` of all entries.
     void collect(Part part, std::span<const Entry> handed, Crowd& crowd) {
         if (part.handed) {
             std::ranges::copy_if(handed, std::back_inserter(crowd.whole),

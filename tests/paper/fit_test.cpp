@@ -6,8 +6,12 @@
 #include <cmath>
 #include <functional>
 
+#include "machine/median.hpp"
+
 namespace octopair::paper {
 namespace {
+
+using bench::median;
 
 constexpr double sizes[] = {1e5, 2.5e5, 5e5, 1e6, 1.5e6, 2e6};
 

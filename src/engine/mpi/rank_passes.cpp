@@ -8,7 +8,8 @@
 
 namespace octopair {
 
-/// Filters pairs, and passes them to another writer. Polls for stop requests, as a share may write for minutes.
+/// Passes the pairs of a share of the work to another writer, without those that the filter of the call drops. Polls for stop requests,
+/// because a share may write pairs for minutes.
 class RankExecutor::Writer final : public ShareWriter {
 public:
     Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}

@@ -74,7 +74,7 @@ std::optional<Event> event_of(std::string_view word, const std::string& place) {
     refuse(place, fmt::format("event '{}': neither begin nor end", shown_text(word)));
 }
 
-/// Checks rows, and collects them.
+/// Collects the rows of a file of results. Refuses rows that no search can give, such as an object that collides with itself.
 class ResultBuilder {
 public:
     explicit ResultBuilder(std::string file) : file_(std::move(file)) {}

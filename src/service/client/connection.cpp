@@ -28,7 +28,7 @@ namespace octopair::service {
 
 namespace {
 
-/// Minimum deadline of the first call: time for one round trip.
+/// Minimum deadline of Describe, the first call on a connection: a shorter time-out of the user would leave no time for a round trip.
 constexpr std::chrono::milliseconds min_deadline(1000);
 
 bool encrypts(const ClientOptions& options) {
