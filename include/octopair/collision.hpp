@@ -16,7 +16,7 @@ namespace [[gnu::visibility("default")]] octopair {
 /// Relation of two objects.
 enum class CollisionClass : std::uint8_t {
     unknown,      ///< no exact filter has tested the pair
-    clearance,    ///< the objects do not meet; their distance is at most margin and paddings
+    clearance,    ///< the objects do not meet; their distance is at most margin + both paddings
     collision,    ///< the objects meet; no exact feature filter has determined how
     touching,     ///< the objects meet, but their interiors do not, or a motion within the tolerance separates them
     penetrating,  ///< their interiors meet, or their surfaces pass through each other

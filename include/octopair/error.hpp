@@ -24,18 +24,18 @@ enum class ErrorCode : std::uint8_t {
 
 /// The object, query or id of a call that an error is about.
 struct ErrorPlace {
-    /// Index in its set, as the message has it: of an object, a query, an id of the call, or a triangle.
+    /// Index of the object, query, id or triangle in its set. The message of the error has the same index.
     std::uint64_t index = 0;
     unsigned set = 0;                         ///< 1: the second set of a join; otherwise 0
-    std::optional<std::uint64_t> frame = {};  ///< of a moving scene; absent if the input has no frames
+    std::optional<std::uint64_t> frame = {};  ///< frame of a moving scene; absent if the input has no frames
 };
 
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
     ErrorCode code() const noexcept { return code_; }
-    /// Returns what the error is about; nothing if it is not about one object, query or id. A copy of an Error has no place: to
-    /// keep it, store a std::exception_ptr.
+    /// Returns the object, query or id that the error is about; nothing if the error is about none or several. A copy of an Error has
+    /// no place. To keep the place, store a std::exception_ptr.
     std::optional<ErrorPlace> place() const noexcept;
 
 private:

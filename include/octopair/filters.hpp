@@ -48,8 +48,8 @@ struct TextColumns {
     /// Returns the text of an object in a column; empty: the object has none.
     std::function<std::string_view(std::uint32_t object, std::size_t column)> text;
 };
-/// A pattern per column. An object matches if each of its texts matches the pattern of its column. Columns without a pattern do not
-/// matter; one may be at the end of the list without an element.
+/// A pattern per column. An object matches if, in each column with a pattern, its text matches the pattern. The list may end before the
+/// last column: columns without an element have no pattern.
 using ColumnPatterns = std::vector<std::optional<std::string>>;
 /// The rule drops a pair if one object matches `a` and the other object matches `b`. Patterns are those of NameRule.
 struct ColumnRule {
@@ -67,14 +67,14 @@ std::unique_ptr<Filter> make_parent_filter(std::span<const std::uint32_t> parent
 /// Options of the exact filters.
 struct ExactOptions {
     double margin = 0;  ///< largest Euclidean distance, besides paddings, at which a pair is kept; finite, >= 0
-    /// Largest number of contacts stored per pair. Of more contacts, the deepest are kept; of equally deep ones, those of the triangles
-    /// with the least numbers. Finding::more_contacts then is true. Bounds memory, too. 0: none.
+    /// Maximum number of contacts stored per pair, which also bounds memory; 0: none. If a pair has more, the deepest are kept, and
+    /// Finding::more_contacts is true. Of equally deep contacts, those of the triangles with the lowest indices are kept.
     std::uint32_t max_contacts = 16;
-    /// Length, finite, >= 0. Objects are `touching` if a translation of at most this length is proven to separate them, to
-    /// rounding.
+    /// Length, finite, >= 0. Objects are `touching` if a translation of at most this length is proven to separate them, up to
+    /// rounding errors.
     double tolerance = 0;
-    /// Length, finite, >= 0; the default is the tolerance. Objects of the same geometry are `duplicate` if no corner is further
-    /// from its counterpart.
+    /// Length, finite, >= 0; the default is the tolerance. Objects of the same geometry are `duplicate` if each corner of one object is at
+    /// most this far from the same corner of the other object.
     std::optional<double> duplicate_tolerance = {};
 };
 
@@ -116,7 +116,7 @@ struct TriangleOptions {
     AdjacentTriangles adjacent = AdjacentTriangles::beyond_shared;
     double margin = 0;      ///< largest distance at which triangles that are not adjacent are kept; finite, >= 0
     bool features = false;  ///< true: computes contact and depth, and distinguishes penetrating from touching
-    /// With `features`: length, finite, >= 0. Triangles that a translation of at most this length separates only touch.
+    /// With `features`: length, finite, >= 0. Triangles count as touching if a translation of at most this length separates them.
     double tolerance = 0;
     unsigned threads = 0;  ///< threads that check the triangles when the filter is made; 0: one per core
 };
@@ -128,7 +128,7 @@ std::unique_ptr<Filter> make_triangle_filter(const TriangleSet& first, const Tri
 
 /// Returns the box of each triangle in float32, rounded outward. Uses `threads` threads; 0: one per core.
 std::vector<Box3f> boxes_of(std::span<const Triangle3d> triangles, unsigned threads = 0);
-/// Writes the boxes to `boxes`, for example memory from Engine::allocate_boxes.
+/// Like the function above, but writes the boxes to `boxes`, for example memory from Engine::allocate_boxes.
 /// Requires: `boxes` has as many elements as `triangles`.
 void boxes_of(std::span<const Triangle3d> triangles, std::span<Box3f> boxes, unsigned threads = 0);
 

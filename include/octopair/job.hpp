@@ -40,7 +40,7 @@ enum class JobState : std::uint8_t {
     running,    ///< runs, or waits until the engine has finished a direct call
     done,       ///< summary and pairs are available
     failed,     ///< summary() throws the job's Error
-    cancelled,  ///< by its handle, the engine's end, or an Error{cancelled} of its sink or progress function
+    cancelled,  ///< by its handle, by the destruction of its engine, or by an Error{cancelled} of its callbacks
 };
 
 using OwnedBoxes = std::variant<std::vector<Box3f>, std::vector<Box3d>, BoxArray<Box3f>, BoxArray<Box3d>>;
@@ -81,7 +81,7 @@ using JobInput = InputOf<JobObjects>;
 /// The handle of a job. It may outlive the engine, whose destruction cancels its jobs.
 ///
 /// Destruction and assignment cancel the job and wait until the engine has released the job's input, sink and progress
-/// function. Inside of this sink or progress function they do not wait.
+/// function. If this sink or progress function itself destroys or assigns the handle, they do not wait.
 ///
 /// A handle that was default-constructed or moved from has no job. Its state is `cancelled`, its progress is 0, and waiting
 /// returns at once; summary() and take_pairs() throw Error{usage}.
@@ -96,7 +96,7 @@ public:
     JobState state() const noexcept;
     double progress() const noexcept;  ///< fraction of the work that is done, 0 to 1; never decreases
 
-    /// Waits until the job has ended. Throws: Error{usage} in a callback of the same engine, where the wait could not end.
+    /// Waits until the job has ended. Throws: Error{usage} in a callback of the same engine, because the wait would never end.
     void wait() const;
     /// Waits until the job has ended, but at most for `time` and at most a year. Returns true if the job has ended.
     template <typename Rep, typename Period>

@@ -4,14 +4,14 @@
 // Result    The same bytes as from every engine (engine.hpp). The server keeps a result until it is released, or until the
 //           server's retention time has passed.
 // Roles     A server can give a client another role than owner (docs/server.md). A reader sees the jobs of one owner, and reads
-//           their results. An operator sees and cancels the jobs of all owners, and can end the server. Other calls throw
-//           Error{usage}.
+//           their results. An operator sees and cancels the jobs of all owners, and can end the server. Calls that a role does not
+//           allow throw Error{usage}.
 // Jobs      A submitted job is on the server's disk: it completes even if the client ends or the server restarts. Only its
 //           owner sees it. All clients with the same token or certificate are one owner; so are all clients of a server that
 //           requires neither.
 // Faults    If the server becomes unreachable, a call repeats its request until the server answers or
-//           ClientOptions::patience has passed; before the first contact, ClientOptions::connect_timeout. Nevertheless a job
-//           is submitted once, and a sink receives each pair once.
+//           ClientOptions::patience has passed. Before the first contact, the call waits at most ClientOptions::connect_timeout.
+//           Nevertheless a job is submitted once, and a sink receives each pair once.
 // Errors    octopair::Error, as from connect() (client.hpp). Error{bad_input} for an unknown job; Error{usage} if the server
 //           takes no detached jobs; Error{resource_limit} that names the server's limit; Error{cancelled} after a stop
 //           request. result() throws the job's Error, and Error{cancelled} for a cancelled job.
@@ -54,7 +54,7 @@ struct JobStatus {
 
 /// Settings of a job, besides Options.
 struct JobTerms {
-    std::string id = {};      ///< lower-case UUID; empty: a random one
+    std::string id = {};      ///< lower-case UUID; empty: the client chooses a random id
     bool count_only = false;  ///< true: counts the pairs and stores none
 };
 

@@ -14,7 +14,7 @@
 // Memory    Proportional to the rank's objects, besides input and output (docs/memory.md has the bytes). Lists in ascending
 //           order are held twice for a while. A streaming rank holds at most Options::buffer_bytes of pairs, or the pairs of a
 //           small part of the objects if these are more.
-// CMake     Link octopair::mpi. Any MPI 3; all ranks on machines of one kind.
+// CMake     Link octopair::mpi. Works with any MPI 3; all ranks must run on machines of one kind.
 #pragma once
 
 #include <mpi.h>
@@ -75,14 +75,14 @@ struct RankCosts {
     double join = 0;   ///< exchanges the requests of all ranks
     double plan = 0;   ///< plans the octants
     double route = 0;  ///< finds the ranks that receive each object
-    double pack = 0;   ///< packs the objects to send, and decodes the positions of received ones
+    double pack = 0;   ///< packs the objects to send, and decodes the positions of received objects
     double build = 0;  ///< builds the octree of the received objects
     double scan = 0;   ///< finds the pairs
     double order = 0;  ///< sorts the pairs into ascending order
     double mpi = 0;    ///< CPU time inside of MPI calls, including time that MPI spends polling
     std::uint64_t bytes_sent = 0, messages_sent = 0;
     std::uint64_t objects = 0;         ///< number of objects in this rank's slices
-    std::uint64_t shared_objects = 0;  ///< number of these that went to several ranks
+    std::uint64_t shared_objects = 0;  ///< number of objects in this rank's slices that were sent to several ranks
     std::uint64_t objects_received = 0;
     std::uint64_t octants = 0;  ///< number of octants that this rank stores: the top of the octree, and its own
 };

@@ -7,7 +7,7 @@
 // State     The caller's floating-point state (rounding mode, flushing of subnormal numbers, traps) changes no result. A call
 //           sets the default state and restores the caller's state at its end. Sinks, progress functions and filters run in
 //           the default state.
-// Ownership Boxes and padding are borrowed and never modified. If they change meanwhile, a result is arbitrary, or an error.
+// Ownership Boxes and padding are borrowed and never modified. If they change during a call, its result is arbitrary, or an error.
 #pragma once
 
 #include <compare>
@@ -32,7 +32,7 @@ using Boxes = std::variant<std::span<const Box3f>, std::span<const Box3d>>;
 /// Objects of one call. Borrowed: the arrays must outlive the call. At most 2^32 - 1 objects (in a join, both sets together).
 struct Objects {
     Boxes boxes;
-    std::span<const double> padding = {};  ///< clearance of each object, finite and >= 0; empty: none
+    std::span<const double> padding = {};  ///< clearance of each object, finite and >= 0; empty: no padding
 
     std::uint64_t size() const noexcept {
         return std::visit([](auto span) -> std::uint64_t { return span.size(); }, boxes);

@@ -9,12 +9,14 @@
 // Home      Each object has one home: of the octants with its entries, the octant in which its box begins, which holds the box's
 //           low corner. So the home of a large box may have octants below it.
 // Bounds    In the unit and the coordinates of the boxes. Bounds of neighbours meet exactly, and those of children tile their parent.
-//           A box is widened by margin / 2 and its padding, and then mapped to cells in float32. So a box that ends very close to a
-//           face may count to either side: within a cell, which is 2^-21 of the root's side, or within 2^-20 of its coordinates.
+// Bounds    In the unit and the coordinates of the boxes. Bounds of neighbours meet exactly, and those of children tile their parent.
+//           A box is widened by margin / 2 and its padding, and then mapped to cells in float32. If a box ends very close to a face of
+//           an octant, rounding decides on which side of the face the box ends. Very close means within a cell, which is 2^-21 of the
+//           root's side, or within 2^-20 of the box's coordinates.
 // Border    The octree covers the bulk of the objects. Coordinates outside of space() count as the nearest cell within. So an
 //           octant at a face of space() also stores boxes beyond this face. Octants may reach beyond the upper faces of space(). An
-//           octant that lies beyond them has no entries. Bounds end where float32 ends. So in scenes of this size, octants at the
-//           upper border may have bounds of extent 0.
+//           octant that lies beyond them has no entries. Bounds never exceed the range of float32. So in scenes as large as this
+//           range, octants at the upper border may have bounds of extent 0.
 #pragma once
 
 #include <cstddef>
@@ -63,8 +65,8 @@ public:
     /// Returns all octants in pre-order. There is at least the root, unless the list was made without octants. Valid as long as a
     /// copy of this list exists. Complexity: constant.
     std::span<const OctantSummary> all() const noexcept;
-    /// Returns the objects with an entry in all()[octant]: first those that have their home there, then the others. Both parts
-    /// ascend. Valid as long as a copy of this list exists.
+    /// Returns the objects with an entry in all()[octant]: first the objects that have their home there, then the other objects. Each
+    /// part ascends by index. Valid as long as a copy of this list exists.
     /// Requires: octant < all().size(). Complexity: constant.
     std::span<const std::uint32_t> objects(std::size_t octant) const noexcept;
     /// Returns for each object the position of its home in all(), or `no_octant` for an index of a scene without an object. Valid as
@@ -78,7 +80,7 @@ public:
 
 private:
     friend Octants detail::make_octants(std::shared_ptr<const detail::OctantLists> lists) noexcept;
-    std::shared_ptr<const detail::OctantLists> lists_;  // null: without octants
+    std::shared_ptr<const detail::OctantLists> lists_;  // null for a list without octants
 };
 
 struct OctantOptions {
@@ -90,9 +92,9 @@ struct OctantOptions {
 /// depends neither on the number of threads nor on the instruction set. The sum of `entries` is Summary::entries of this search.
 /// Throws: Error{bad_input} with the object and the value for an invalid box, padding or margin; Error{resource_limit} if the memory
 /// does not suffice, or for more than 2^32 - 1 objects; Error{cancelled} within 200 ms after a stop request, unless the list is
-/// made before.
+/// complete before.
 /// Complexity: time of the search without its scan, and about 10 ns per entry, divided among the threads. The result has 4 bytes
-/// per entry, 4 per object and 96 per octant. While the list is made, the octree takes the memory of a search, too.
+/// per entry, 4 per object and 96 per octant. Until the function returns, it also needs the memory that a search takes for the octree.
 Octants list_octants(const Objects& objects, const OctantOptions& options = {}, std::stop_token stop = {});
 
 }  // namespace octopair

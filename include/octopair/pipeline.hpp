@@ -7,7 +7,7 @@
 // Errors    octopair::Error. An exception of a filter or the sink ends the call and propagates to the caller.
 // Ranks     With the MPI engine run() is collective, and each rank filters its own piece of the pairs. Options::limit must not
 //           be set: a rank does not know how many collisions other ranks found. An exception of a filter may be thrown on its
-//           rank only. filter() of a piece is not collective.
+//           rank only. filter() is not collective: it filters the pairs of the calling rank.
 // Threads   Filters run in the caller's process, on several threads at once, each with its own batch. A pipeline makes one
 //           call at a time.
 // CMake     Link octopair::pipeline.
@@ -78,7 +78,7 @@ public:
         if (!findings_.empty()) findings_.resize(kept);
     }
 
-    /// Counts a pair that the filter drops although its objects do not decide whether it counts (FilterCounts::undecided).
+    /// Counts a pair that the filter drops although the geometry leaves open whether the pair is a collision (FilterCounts::undecided).
     void count_undecided() { ++undecided_; }
 
     /// Returns the stop token of the call. A filter that spends long on one pair should check it.
@@ -107,7 +107,7 @@ public:
     /// Filters a batch. Requires: the effect on a pair depends only on that pair.
     /// Thread safety: several threads call this at once, with different batches.
     virtual void apply(Batch& batch) const = 0;
-    /// Returns how many pairs a batch should have at least, for a filter whose time is mostly per call. The last batch may have fewer.
+    /// Returns the minimum number of pairs per batch, for a filter whose time is mostly per call. The last batch may have fewer pairs.
     virtual std::size_t least_batch() const { return 1; }
 };
 
@@ -118,8 +118,8 @@ struct FilterCounts {
     std::string name;
     std::uint64_t in = 0, out = 0;  ///< number of pairs before and after the filter
     double seconds = 0;             ///< sum over all threads
-    /// Dropped pairs that may count. For "exact object": an object lies in the bounds of a mesh that is not closed and so has no
-    /// inside. The surfaces do not meet.
+    /// Number of dropped pairs that may be collisions. For "exact object": an object lies in the bounds of a mesh that is not closed. Such
+    /// a mesh has no inside, and the surfaces do not meet, so the filter cannot decide.
     std::uint64_t undecided = 0;
 };
 
@@ -151,8 +151,8 @@ public:
 
     /// Finds pairs with the engine, filters them and passes the collisions to `sink`; an empty sink: only counts them.
     /// Filters and sinks that call `engine` get an Error{usage} (engine.hpp).
-    /// `Options::limit` is the maximum number of collisions. `Options::verify` checks the engine's pairs, not the filters; if
-    /// the limit ends the search early, only the pairs found so far. Throws: as Engine::stream_pairs().
+    /// `Options::limit` is the maximum number of collisions. `Options::verify` checks the engine's pairs, not the filters. If the limit
+    /// ends the search early, it checks only the pairs found so far. Throws: as Engine::stream_pairs().
     PipelineSummary run(Engine& engine, const Input& input, const CollisionSink& sink, const Options& options = {},
                         std::stop_token stop = {});
     /// Filters the given pairs in their order. Uses only `limit`, `buffer_bytes` and `progress` of the options.

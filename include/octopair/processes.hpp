@@ -54,7 +54,7 @@ std::unique_ptr<Engine> make_process_engine(unsigned workers = 0,
 struct WorkerFaults {
     std::uint64_t ended = 0;    ///< number of workers that died
     std::uint64_t stopped = 0;  ///< number of workers that were stopped (SIGSTOP) and therefore killed
-    /// Number of these workers that were running a share, by its step: prepare, encode (with scatter), count, scan, order.
+    /// Number of dead or stopped workers that were running a share, by its step: prepare, encode (with scatter), count, scan, order.
     std::array<std::uint64_t, 5> in_share = {};
 };
 

@@ -41,7 +41,7 @@ public:
     /// Deletes the scene on the server.
     ~RemoteScene();
 
-    /// These calls are those of Scene. All of them copy the arrays.
+    /// The calls from here to step() do what those of Scene (scene.hpp) do. All of them copy their arrays.
     void add(const Objects& objects, std::span<ObjectId> ids, std::span<const Traits> traits = {});
     void move(std::span<const ObjectId> ids, const Boxes& boxes);
     void sweep(std::span<const ObjectId> ids, const Boxes& boxes);
@@ -49,10 +49,10 @@ public:
     void set_traits(std::span<const ObjectId> ids, std::span<const Traits> traits);
 
     /// Runs Scene::step() on the server. `StepResult::seconds` includes the network round trip.
-    /// Throws: the errors above; Error{cancelled} within 200 ms after a stop request.
+    /// Throws: the errors listed at the head of this file; Error{cancelled} within 200 ms after a stop request.
     const StepResult& step(std::stop_token stop = {});
 
-    /// The remaining calls are those of Scene.
+    /// The remaining calls do what those of Scene do.
     const PairList& pairs();
     const PairList& persisting();
 

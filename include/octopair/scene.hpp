@@ -6,7 +6,7 @@
 // Objects   An object has an index, which pairs and queries use, and a generation. An id never denotes two objects. The index
 //           of a removed object is reused after the next step() at the earliest, so it denotes one object within a step.
 // Errors    octopair::Error{bad_input}, with the position in the call, for an invalid box or an id that is not in the scene;
-//           {resource_limit} if a step runs out of memory; other calls then throw std::bad_alloc. A call that fails changes
+//           {resource_limit} if a step runs out of memory; calls other than step() then throw std::bad_alloc. A call that fails changes
 //           nothing. A step() that fails or is cancelled leaves pairs() unchanged and may be repeated.
 //           {engine_failed}, with the pair, if a search was wrong, which only an error in octopair causes: a step finds a
 //           pair twice, a pair begins that existed, or a pair ends that did not exist. step(), pairs() or persisting() may
@@ -14,8 +14,8 @@
 //           A scene that was moved from may only be destroyed or assigned to.
 // Threads   One thread at a time, also for queries.
 // Cost      A step's time depends on what moved; if most objects moved, it is that of a full detection. The first step in which
-//           few moved builds an octree, which takes about two full detections; a query right after a step builds it, too.
-//           docs/memory.md bounds the bytes per object and per pair. docs/results.md has measurements.
+//           few objects moved builds an octree, which takes about two full detections. A query right after a step builds the octree,
+//           too. docs/memory.md bounds the bytes per object and per pair. docs/results.md has measurements.
 #pragma once
 
 #include <compare>
@@ -63,14 +63,14 @@ struct SceneOptions {
     /// Path of a file that records all calls, for `octopair replay` (docs/formats.md); empty: none. An existing file is
     /// overwritten. Written before and after each step, never synced. A call that cannot be written throws Error{io_failed}.
     std::string recording = {};
-    /// Called with the number of bytes before memory for pairs is allocated. To refuse the memory, it throws; the call that
+    /// Called with the number of bytes before memory for pairs is allocated. To refuse the memory, the function throws; the call that
     /// needed the memory then throws this exception. Empty: no limit but the machine's memory.
-    /// It must not call the scene: octants() and calls that are not const throw Error{usage} there.
+    /// The function must not call the scene: octants() and calls that are not const throw Error{usage} there.
     /// Thread safety: called by any thread, one at a time.
     std::function<void(std::uint64_t bytes)> room_for_pairs = {};
     /// Length by which the scene enlarges the boxes that it searches, on each side. While an object stays within its enlarged box, a
-    /// step does not search around it. pairs() does not depend on the slack. Saves time if most objects move in each step, but
-    /// little: a good slack is 20 to 100 times what they move in a step. Takes further memory per object and pair (docs/memory.md).
+    /// step does not search around it. pairs() does not depend on the slack. Slack saves time if most objects move a little in each step:
+    /// a good slack is 20 to 100 times the length of such a move. Takes further memory per object and pair (docs/memory.md).
     /// 0: no slack.
     double slack = 0;
 };
@@ -78,7 +78,7 @@ struct SceneOptions {
 /// Result of a step. The spans are valid until the scene's next call that is not const.
 struct StepResult {
     std::span<const Pair> began;   ///< pairs that began, by indices; a < b
-    std::span<const Pair> ended;   ///< pairs that ended, those of removed objects included
+    std::span<const Pair> ended;   ///< pairs that ended, including pairs of removed objects
     std::uint64_t persisting = 0;  ///< number of pairs that existed before and still exist
     bool full = false;             ///< true if all objects were searched, not only the changed ones
     double seconds = 0;            ///< wall-clock time
@@ -121,7 +121,7 @@ public:
     /// pairs(). They depend on how objects moved before. Valid until the next step.
     const PairList& enlarged_pairs();
 
-    /// Compares pairs() with the pairs that a second algorithm finds. It shares no code with the octree (docs/proofs.md, "Certificates").
+    /// Compares pairs() with the pairs of a second algorithm, which shares no code with the octree (docs/proofs.md, "Certificates").
     /// Call it directly after step(), because the pairs are those of the last step.
     /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} if there was no step yet, or if an object was added,
     /// changed or removed since; Error{resource_limit} if the memory does not suffice; Error{cancelled} within 200 ms after a stop request.

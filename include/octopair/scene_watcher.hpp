@@ -1,12 +1,13 @@
 // SceneWatcher: lists the scenes of a server (`octopair serve`), and copies their objects and pairs while their clients step them.
 //
-// Scenes    Those of RemoteScene objects, in any program. A scene is listed after its first call has reached the server, and until
+// Scenes    The scenes of RemoteScene objects, in any program. A scene is listed after its first call has reached the server, and until
 //           its client ends. A client sees its own scenes. With the role reader it sees those of one owner. With the role operator
 //           it lists the scenes of all owners, but next() throws Error{usage}, as reading a job's result does (docs/server.md).
 // Steps     A watcher receives some of the steps. The server copies a scene at most once in 20 ms, and for at most 1% of the scene's
 //           time, so it skips steps of large scenes. A scene waits for none of its watchers.
 // Faults    If the server becomes unreachable, a call repeats its request until the server answers or ClientOptions::patience
-//           has passed; before the first contact, ClientOptions::connect_timeout. Scenes get other ids on the next server.
+//           has passed. Before the first contact, the call waits at most ClientOptions::connect_timeout. After a restart of the server
+//           a scene has another id.
 // Errors    octopair::Error, as from connect() (client.hpp). Error{bad_input} for a scene that the caller does not see, or that has
 //           ended; Error{usage} if the server is too old; Error{resource_limit} that names the server's limit, above all if its
 //           memory does not suffice for the copy; Error{cancelled} after a stop request.
@@ -32,7 +33,7 @@
 
 namespace [[gnu::visibility("default")]] octopair {
 
-/// A running scene of a server. The numbers are those after its last step.
+/// A running scene of a server. Its counts are those after the last step.
 struct SceneStatus {
     std::string id;     ///< UUID that the server chose
     std::string owner;  ///< name of the client that runs the scene; empty: this client

@@ -72,13 +72,13 @@ struct PreparedShape;
 const PreparedShape& prepared(const Geometry& geometry);
 }  // namespace detail
 
-/// Closes small gaps. Joins vertices at the edges of gaps (edges that are in an odd number of triangles) that are at most
-/// `tolerance` apart, and those that chains of such steps connect, at the place of the first. Other vertices, and closed meshes, stay as
-/// they are, but vertices in equal places become one. Triangles keep their numbers; some may become degenerate.
+/// Closes small gaps. First makes vertices in equal places one. Then joins vertices at the borders of gaps that are at most `tolerance`
+/// apart; an edge in an odd number of triangles is such a border. Joins can form chains: all vertices of a chain move to the place of
+/// the first vertex. Other vertices and closed meshes keep their shape. Triangles keep their numbers; some may become degenerate.
 /// Throws: Error{bad_input} if the tolerance is negative or not finite.
 void weld(shape::Mesh& mesh, double tolerance);
 
-/// A shape that is prepared for tests; a mesh with its bounding volume hierarchy. Objects of equal shape should share one.
+/// A shape that is prepared for tests. For a mesh, this includes a bounding volume hierarchy. Objects of equal shape should share one.
 class Geometry {
 public:
     /// Checks and prepares `shape`. Throws: Error{bad_input} if it is invalid.
@@ -86,7 +86,7 @@ public:
 
     const shape::Any& shape() const;
     /// Returns false if a part of a mesh is not closed: an edge is in an odd number of triangles. Such a part has no inside, so an
-    /// object within it does not meet it. Always true for other shapes.
+    /// object within the part does not meet the mesh. Always true for other shapes.
     bool closed() const;
 
 private:

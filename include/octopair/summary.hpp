@@ -10,8 +10,8 @@ namespace [[gnu::visibility("default")]] octopair {
 struct StepSeconds {
     double encode = 0;  ///< finds the octants of each box; the paper's encode
     double count = 0;   ///< counts the entries of each octant
-    /// Appends the entries to the lists of their octants; the paper's sort. Encode and scatter run in one pass, whose time is
-    /// divided by a sample.
+    /// Appends the entries to the lists of their octants; the paper's sort. Encode and scatter run in one pass. A sample of batches is
+    /// timed to divide the time of the pass.
     double scatter = 0;
     double scan = 0;  ///< finds the pairs; the paper's scan
 };

@@ -6,7 +6,7 @@
 //           to copy at once. Pages that read slowly, or not at all, get fewer frames.
 //           The threads of the server have a low priority. Without a page, a call of show() takes well under a microsecond,
 //           except once a second.
-// Large     Of more than 200,000 objects, those with the first indices are drawn. The page says so.
+// Large     If the scene has more than 200,000 objects, the page draws those with the lowest indices. The page says so.
 // Access    The server listens on this machine only, and answers only its own page, opened by this user or root. With another
 //           `host` it requires a token.
 // Ownership Borrows the scene, which must outlive the view and must not be moved.
@@ -29,11 +29,11 @@ struct ViewOptions {
     std::vector<std::string> names = {};  ///< empty, or names of the objects by index
     std::string up = "z";                 ///< axis that points up: "y" or "z"
     std::string unit = {};                ///< unit of length, for example "m"; empty: none
-    double margin = 0;                    ///< that of the scene, for the octants
+    double margin = 0;                    ///< margin of the scene, needed to list its octants
     std::string host = "127.0.0.1";       ///< numeric address to listen on
     std::uint16_t port = 0;               ///< 0: any free port
     std::string token = {};         ///< required for a `host` that other machines reach; at least 16 letters and digits
-    double frames_per_second = 30;  ///< most frames that are copied in a second; 0.001 to 1000
+    double frames_per_second = 30;  ///< maximum number of frames that are copied per second; 0.001 to 1000
 };
 
 class View {
@@ -48,7 +48,7 @@ public:
     /// Returns the address for a browser, for example "http://127.0.0.1:40123/".
     std::string address() const;
     /// Shows the scene after a step. `step`: the result of this step. Call it after each step, because it counts the events.
-    /// `at_once`: copies the scene now, whatever the pace, and waits for an earlier copy: for the last step before a pause.
+    /// `at_once`: copies the scene now, whatever the pace is, and waits for an earlier copy. For the last step before a pause.
     /// Throws: std::bad_alloc.
     void show(const StepResult& step, bool at_once = false);
     /// Returns the number of pages that are connected.

@@ -17,10 +17,10 @@ struct ChildProgram {
     static constexpr int max_descriptors = 4;
 
     std::string path;
-    std::span<char* const> arguments;  ///< with the name of the program, and a null pointer at the end
-    /// Descriptors that the program gets as 3, 4, ... It gets no others but 0, 1 and 2. At most max_descriptors.
+    std::span<char* const> arguments;  ///< begin with the name of the program, and end with a null pointer
+    /// Descriptors that the program gets as 3, 4, ...; at most max_descriptors. Besides these, the program gets only 0, 1 and 2.
     std::span<const int> descriptors;
-    bool keeps_stderr = false;  ///< false: 2 is /dev/null, as 0 and 1 are
+    bool keeps_stderr = false;  ///< false: descriptor 2 is /dev/null, as descriptors 0 and 1 always are
 };
 
 /// Starts a program in a process group of its own, with no signal blocked or ignored. The system kills it when the calling thread ends.

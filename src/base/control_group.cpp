@@ -30,7 +30,7 @@ std::optional<double> number_in(const std::string& path) {
 }
 
 void lower_memory(ControlGroupLimits& limits, const std::string& file) {
-    constexpr double unlimited = 1e18;  // version 1 writes a number beyond all memory
+    constexpr double unlimited = 1e18;  // without a limit, version 1 writes a number larger than any memory
     const auto bytes = number_in(file);
     if (bytes && *bytes < unlimited) lower(limits.memory_bytes, std::uint64_t(*bytes));
 }
@@ -75,7 +75,7 @@ ControlGroupLimits control_group_limits(const std::string& root) {
 }
 
 unsigned allowed_processors() {
-    // The kernel refuses a set that is smaller than its own, which may have more processors than cpu_set_t.
+    // The kernel refuses a set with fewer processors than its own set, which may have more processors than cpu_set_t.
     constexpr std::size_t most_sets = 64;
     for (std::size_t sets = 1; sets <= most_sets; sets *= 2) {
         std::vector<cpu_set_t> processors(sets);

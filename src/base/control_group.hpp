@@ -9,7 +9,7 @@
 
 namespace octopair {
 
-/// Empty: no limit, or none that can be read.
+/// Limits of a control group. An empty value means that there is no limit, or that the limit cannot be read.
 struct ControlGroupLimits {
     std::optional<std::uint64_t> memory_bytes;
     std::optional<double> cores;  ///< processor time for each second, in seconds

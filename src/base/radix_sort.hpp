@@ -14,7 +14,7 @@
 
 namespace octopair {
 
-/// Keeps its memory for later calls.
+/// The sorter keeps its memory for later calls.
 template <typename Key>
 class RadixSort {
 public:

@@ -1,8 +1,8 @@
-// Test hooks: let tests count the paths that a call takes, make all limits small, plant faults and stop requests.
+// Test hooks let tests count the paths through the algorithm that a call takes, lower all limits, and plant faults and stop requests.
 //
-// - Only a build with OCTOPAIR_TEST_HOOKS has them. Without it, the functions are empty constants that the compiler removes.
-// - The state is one TestHooks. If OCTOPAIR_TEST_HOOKS_FILE names a file, the state is in that file, which processes share. So
-//   the worker processes of a test use its tuning and fault, and count their paths together with the test.
+// - Only a build with OCTOPAIR_TEST_HOOKS has the hooks. Without it, the functions are empty constants that the compiler removes.
+// - All state is in one TestHooks. If OCTOPAIR_TEST_HOOKS_FILE names a file, the state is in that file, which processes share. So
+//   the worker processes of a test use the test's tuning and fault, and add their paths to the test's counts.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace octopair {
 
-/// All paths, grouped by the file that chooses them. A test of tiny scenes takes each path.
+/// All paths through the algorithm, grouped by the source file that chooses the path. A test of tiny scenes takes each path.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
     /* octree/encode/split_rule.cpp, octree/directory.cpp */ \
@@ -74,18 +74,18 @@ inline constexpr auto path_names = std::to_array<std::string_view>({
 enum class Fault : unsigned {
     none,
     begins_bit_cleared,       ///< a ghost loses the class bits that it brought into a nested octree
-    octant_border_open,       ///< a box that ends in the first cell of an octant does not touch it
-    window_end_open,          ///< a column that begins where the rows of a block end is not tested
-    cell_window_end_open,     ///< a column that begins in the last cell of a block of rows is not tested
-    cell_gap_too_small,       ///< a hit whose ends are in equal cells is certain
-    tile_end_open,            ///< a tile that begins where a tile of rows ends is not swept
+    octant_border_open,       ///< a box that ends in the first cell of an octant is not stored in that octant
+    window_end_open,          ///< a sweep does not test a column that begins where the rows of a block end
+    cell_window_end_open,     ///< a sweep on cells skips a column that begins in the last cell of a block of rows
+    cell_gap_too_small,       ///< a hit whose ends are in equal cells counts as a pair without an exact test
+    tile_end_open,            ///< a sweep skips a tile that begins where a tile of rows ends
     handed_to_wrong_child,    ///< an entry is handed down to an octant that it does not touch
     nested_space_moved,       ///< class bits of handed down entries are computed in a space that is shifted by one cell
     stream_windows_overlap,   ///< a window begins with the last object of the previous window
     sweep_repeats_block,      ///< a resumed sweep repeats its block of rows
-    part_joined_twice,        ///< two parts of a crowd are joined in both directions
+    part_joined_twice,        ///< two parts of a crowded octant are joined in both directions: pairs are found twice
     rank_takes_neighbour,     ///< a rank's run of octants includes the first one of the next rank
-    positions_always_near,    ///< ranks send the lowest bits of positions, however far apart the positions are
+    positions_always_near,    ///< ranks send only the lowest bits of positions, also if the positions are far apart
     overlap_called_touching,  ///< convex shapes that penetrate each other are called touching
 };
 inline constexpr unsigned fault_count = 15;
@@ -93,11 +93,11 @@ inline constexpr unsigned fault_count = 15;
 /// Value of TestHooks::polls_before_stop with which no poll finds a stop request.
 inline constexpr std::int64_t never_stopped = std::numeric_limits<std::int64_t>::max();
 
-/// State that tests set and read. It holds no pointers, so it can lie in a file that processes share.
+/// State that tests set and read. TestHooks holds no pointers, so it can lie in a file that processes share.
 struct TestHooks {
     Tuning tuning;
     Fault fault = Fault::none;
-    /// Number of polls for a stop request before polls find one, whether there is one or not.
+    /// Number of polls without a stop. All later polls report a stop request, even if no caller requested a stop.
     std::atomic<std::int64_t> polls_before_stop = never_stopped;
     std::array<std::atomic<std::uint64_t>, path_names.size()> paths = {};  ///< number of times that each path was taken
 };

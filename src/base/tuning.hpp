@@ -1,4 +1,4 @@
-// Tuning: every constant that chooses or bounds a path through the algorithm, in one place.
+// Tuning: every constant that chooses or bounds a path through the algorithm, in one place. Tests count these paths (test_hooks.hpp).
 //
 // - The values were found by measurement on the scenes of docs/scenes.md.
 // - They change times, memory and the octal order, never the set of pairs or the ascending order.
@@ -8,8 +8,8 @@
 // - A test may lower a value to 1 unless its comment says otherwise. Values that size an array must not be raised.
 //
 // Constants that are defined elsewhere, with their reasons:
-//   formats of files and memory (recordings, memory shared with workers, codes, keys, blocks of two cache lines): layout,
-//     not choice
+//   formats of files and memory (recordings, memory shared with workers, octal codes, keys, blocks of two cache lines): they define a
+//     layout, and choose no path
 //   widths of registers, the arithmetic of rounding, 8 entries per box: proofs depend on them
 //   prefetch distances, the amount of memory committed at once: no path depends on them
 //   weights that distribute work among ranks (engine/mpi/partition/octant_owners.cpp): any weights give the same result
@@ -28,18 +28,18 @@ enum class StepChoice : std::uint8_t { measured, full, incremental };
 struct Tuning {
     /// How objects are sampled when the octree is planned (octree/linear_octree.cpp, octree/space.cpp).
     struct Sampling {
-        std::size_t stride = 64;            ///< one object in this many is sampled
-        std::size_t min_objects = 16;       ///< minimum number of sampled objects, unless there are fewer
-        std::size_t max_objects = 1 << 21;  ///< maximum number of sampled objects
-        std::size_t max_stride = 2048;     ///< one in this many at least, whatever the maximum: as many crowd an octant
-        std::size_t space_objects = 1024;  ///< maximum number of sampled objects that fit the space, for its quantiles
+        std::size_t stride = 64;            ///< one object in this many is sampled, within the limits below
+        std::size_t min_objects = 16;       ///< minimum number of sampled objects, unless the call has fewer objects
+        std::size_t max_objects = 1 << 21;  ///< maximum number of sampled objects, unless `max_stride` requires more
+        std::size_t max_stride = 2048;      ///< one object in this many at least, beyond `max_objects` too
+        std::size_t space_objects = 1024;   ///< maximum number of sampled objects whose quantiles give the space
     } sampling;
 
     /// When an octant is split (octree/encode/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
     struct Split {
-        double always_above = 4096;              ///< an octant with more is split: a sweep of more misses the cache
+        double always_above = 4096;              ///< an octant with more objects is split: their sweep misses the cache
         double never_up_to = 1024;               ///< an octant with at most this many stays whole; <= `always_above`
-        double max_tests_per_object = 60;        ///< an octant is split if its sweep tests more objects per object
+        double max_tests_per_object = 60;        ///< an octant is split if its sweep tests more others per object
         double max_entries_per_object = 1.6;     ///< maximum entries below an octant per object that begins in it
         double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a split
         std::uint64_t max_cells_per_octant = 4;  ///< maximum size of the table from cells to leaves
@@ -47,12 +47,12 @@ struct Tuning {
 
     /// How the steps of a build are divided into shares (octree/linear_octree.cpp, octree/encode/build_steps.cpp).
     struct Build {
-        std::size_t blocks_per_thread = 2;       ///< blocks of objects; each counts the entries of every octant
+        std::size_t blocks_per_thread = 2;       ///< blocks of objects; each block counts the entries of every octant
         std::size_t min_block = 2048;            ///< minimum number of objects per block
         std::size_t counts_per_range = 1 << 16;  ///< minimum number of merged counts per share
         std::size_t batch = 256;                 ///< objects loaded at a time, so that they stay in the L1 cache
-        std::size_t max_chunk = 64;              ///< entries per chunk of a list; a power of two, at least 16
-        std::size_t chunk_part = 4;  ///< with larger chunks, one entry in this many could be unused; at least 1
+        std::size_t max_chunk = 64;              ///< maximum entries per chunk of a list; a power of two, at least 16
+        std::size_t chunk_part = 4;  ///< chunks shrink until at most one entry in this many can be unused; at least 1
     } build;
 
     /// Builds whose lists and tables exceed the caches and the TLB (octree/encode/staged_writer.cpp, octree/encode/batch_encoder.cpp).
@@ -67,55 +67,55 @@ struct Tuning {
     /// How the octants of a linear octree are scanned (octree/scan.cpp).
     struct Scan {
         std::size_t large_octant = 1 << 15;       ///< an octant with more entries is scanned by all threads together
-        std::size_t max_share_entries = 1 << 13;  ///< maximum entries per share: a stop is noticed soon
+        std::size_t max_share_entries = 1 << 13;  ///< maximum entries per share: a stop request is noticed soon
         std::size_t shares_per_thread = 64;       ///< number of shares per thread
-        std::size_t max_swept_list = 65535;       ///< maximum entries of a set that is swept on cells; not more
+        std::size_t max_swept_list = 65535;       ///< maximum entries of a set that is swept on cells; do not raise
         std::uint64_t max_tests_per_box = 192;    ///< maximum number of tests per box in a sweep on cells
-        double max_whole_crowd = 0.25;            ///< maximum part of an octree's entries that are held whole
-        double max_part_in_octant = 0.75;         ///< maximum part of the entries in one octant of a nested octree
-        double max_growth = 4;                    ///< maximum growth of entries by nesting, multiplied along its path
+        double max_whole_crowd = 0.25;            ///< a part with more of an octree's entries is collected as ids
+        double max_part_in_octant = 0.75;         ///< a nested octree with more of its entries in one octant is dropped
+        double max_growth = 4;                    ///< maximum growth of entries: the product over nested octrees
         unsigned max_nesting = 8;                 ///< maximum depth of nesting: octrees within octants of octrees
     } scan;
 
     /// How sets of boxes are sorted and swept (octree/sweep/recursive_sweep.cpp, octree/sweep/start_order.cpp, sweep kernels).
     struct Sweep {
         std::size_t tile = 4096;                ///< boxes per tile: their arrays stay in the L2 cache
-        std::size_t small_set = 512;            ///< a set of at most this many boxes is swept whatever its windows
+        std::size_t small_set = 512;            ///< a set of at most this many boxes is always swept
         std::uint64_t cheap_tests = 64;         ///< a sweep with at most this many tests per box is always good
-        std::uint64_t tests_per_pair = 16;      ///< maximum number of tests per expected pair: two registers per pair
+        std::uint64_t tests_per_pair = 16;      ///< a sweep with at most this many per expected pair is good, too
         std::size_t large_join = 1 << 15;       ///< a join of more boxes is divided among threads
-        std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times groups of columns: a few milliseconds
-        std::size_t hits = 1024;                ///< masks that a call of the kernel may write; at least 8
-        std::size_t cell_hits = 2048;           ///< hits that are judged at a time; at least 128
-        std::size_t max_cell_buckets = 2048;    ///< maximum of a sort by cells; a power of two
+        std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times groups of columns per call: some milliseconds
+        std::size_t hits = 1024;                ///< masks of hits that a call of the kernel may write; at least 8
+        std::size_t cell_hits = 2048;           ///< number of hits whose pairs are decided at a time; at least 128
+        std::size_t max_cell_buckets = 2048;    ///< maximum number of buckets of a sort by cells; a power of two
         std::size_t pairs = 2048;               ///< pairs that are buffered before they are written
-        std::size_t max_buckets = 4096;         ///< maximum of a bucket sort, so that they stay in the L1 cache
+        std::size_t max_buckets = 4096;         ///< maximum number of buckets: they stay in the L1 cache
         std::size_t max_comparison_sort = 24;   ///< up to this many boxes: comparison sort
         std::size_t max_bucket_sort = 1 << 13;  ///< up to this many boxes: bucket sort; more: radix sort
         std::size_t radix_block = 1 << 16;      ///< minimum number of keys per share of a radix sort
         unsigned radix_digit_bits = 11;         ///< bits per digit of a radix sort: the counts stay in the L1 cache
         std::size_t min_measured = 256;         ///< minimum number of boxes of a set that are sampled to measure it
         std::size_t max_measured = 4096;        ///< maximum number of boxes of a set that are sampled to measure it
-        std::size_t tried_rows = 16;            ///< rows that are tested against the sampled columns to estimate hits
-        std::size_t measured_row_stride = 13;   ///< the window of one row in this many is measured
+        std::size_t tried_rows = 16;            ///< rows that are tested against the sampled columns to count hits
+        std::size_t measured_row_stride = 13;   ///< one row in this many has its window measured
     } sweep;
 
     /// Octrees that are updated (octree/dynamic/mutable_octree.cpp, octree/dynamic/leaf_grid.cpp).
     struct Dynamic {
-        std::size_t max_listed_visits = 128;  ///< maximum units of a listed change; a larger change is made alone
-        std::size_t hits = 1 << 16;           ///< number of hits after which a run of visits stops
-        double max_cell_objects = 6;          ///< maximum number of objects that a cell of a grid should hold
-        double max_growth = 2.2;              ///< maximum number of entries per object when a grid cuts a leaf
-        unsigned max_grid_bits = 18;          ///< maximum number of bits of all axes of a grid together
-        std::size_t range_entries = 1 << 12;  ///< maximum number of entries of a share of the build, beside one octant
-        std::size_t min_range_entries = 1 << 9;  ///< the same in small octrees, which have a few shares for each thread
+        std::size_t max_listed_visits = 128;     ///< maximum units that a change lists; a larger change is made alone
+        std::size_t hits = 1 << 16;              ///< number of hits after which a run of visits stops
+        double max_cell_objects = 6;             ///< maximum number of objects that a cell of a grid should hold
+        double max_growth = 2.2;                 ///< maximum number of entries per object when a grid cuts a leaf
+        unsigned max_grid_bits = 18;             ///< maximum number of bits of all axes of a grid together
+        std::size_t range_entries = 1 << 12;     ///< maximum entries of a share of the build that has several octants
+        std::size_t min_range_entries = 1 << 9;  ///< minimum entries of such a share in small octrees
     } dynamic;
 
     /// How pairs are stored, sorted and delivered (engine/). Numbers of pairs, unless a comment says otherwise.
     struct Output {
         std::uint64_t min_buffer_bytes = 1 << 20;       ///< bytes: minimum that Options::buffer_bytes is raised to
         std::size_t batch = 1 << 13;                    ///< smaller batches are collected before a sink receives them
-        std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list, so that progress grows in small steps
+        std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list: more calls let progress grow in small steps
         std::size_t list_block = 1 << 15;               ///< minimum pairs per block of a PairList; at least 64 pages
         std::size_t page = 512;                         ///< pairs per page of a bucket of the ascending order
         unsigned bucket_row_bits = 12;                  ///< log2 of the number of objects per bucket
@@ -124,18 +124,18 @@ struct Tuning {
         std::size_t sorted_at_once = 1 << 20;           ///< a bucket with more pairs is split
         std::size_t bucket_pairs = 1 << 17;             ///< expected number of pairs per bucket, at most
         unsigned sparse_row_bits = 5;      ///< log2 of rows per pair: with more, pairs are sorted by comparison
-        std::size_t bitmap_columns = 64;   ///< a long row with a pair in one of this many columns: bit map
-        std::size_t min_radix_sort = 512;  ///< keys: fewer are sorted by comparison
+        std::size_t bitmap_columns = 64;   ///< a row with a pair in one of this many columns uses a bit map
+        std::size_t min_radix_sort = 512;  ///< keys; fewer keys are sorted by comparison, not by a radix sort
         std::size_t shares_ahead = 4;      ///< shares per thread that a stream computes ahead of the sink
     } output;
 
     /// Worker processes (engine/processes/).
     struct Processes {
-        std::uint64_t objects_per_worker = 4096;  ///< minimum: fewer are not worth another worker
-        std::uint64_t worth_keeping = 1 << 15;    ///< a smaller result is copied, so that its list holds no region
+        std::uint64_t objects_per_worker = 4096;  ///< minimum number of objects for which a further worker is used
+        std::uint64_t worth_keeping = 1 << 15;    ///< a smaller result is copied, so its list keeps no shared memory
         std::size_t kept_regions = 4;        ///< maximum number of regions that lists hold; further lists get copies
         std::uint64_t ring_block = 1 << 15;  ///< maximum number of pairs per block of a stream
-        unsigned blocks_at_once = 16;        ///< blocks that the client takes before it does its other work
+        unsigned blocks_at_once = 16;        ///< blocks that the client takes before its other work
         /// Arena bytes per entry of a nested octree that workers share: a bound for its entries (8 * 16) and the links of their
         /// chunks, with room for the lists of octants. Must not be lowered.
         std::uint64_t nested_bytes = 512;
@@ -143,7 +143,7 @@ struct Tuning {
 
     /// MPI ranks (engine/mpi/).
     struct Ranks {
-        std::uint64_t round_bytes = 16 << 20;  ///< bytes distributed between checks for a stop; at least 48
+        std::uint64_t round_bytes = 16 << 20;  ///< bytes exchanged between checks for a stop request; at least 48
         std::size_t batch = 256;               ///< objects routed at a time
         std::size_t block = 1 << 15;           ///< objects per share; at most 2^15: near positions rely on it
         std::size_t share_pairs = 1 << 16;     ///< pairs per share of the sort
@@ -156,17 +156,17 @@ struct Tuning {
     /// Scenes (scene/).
     struct Scene {
         StepChoice step = StepChoice::measured;
-        unsigned max_refills = 8;  ///< maximum number of refills of the octants of an earlier step
-        double log_part = 0.125;   ///< part of the objects that may change, besides `min_log`, before a full search
-        double min_log = 256;      ///< number of objects that may change in any scene
-        std::uint64_t visits = 1 << 14;         ///< unit visits that a step may make besides half the number of objects
-        std::uint64_t changed_pairs = 1 << 20;  ///< changed pairs that a step may find besides the number of its pairs
+        unsigned max_refills = 8;               ///< maximum number of refills of the octants of an earlier step
+        double log_part = 0.125;                ///< part of the objects that may change, in addition to `min_log`
+        double min_log = 256;                   ///< objects that may change in any scene before a full search
+        std::uint64_t visits = 1 << 14;         ///< unit visits that a step may make, plus half the number of objects
+        std::uint64_t changed_pairs = 1 << 20;  ///< changed pairs that a step may find, plus the number of its pairs
         std::size_t share_visits = 2048;        ///< visits per share of a thread
         std::size_t run_visits = 256;           ///< visits between checks of the limits
-        std::uint64_t waiting_part = 16;        ///< one in this many pairs may wait to be merged into the list
-        std::uint64_t min_waiting = 1 << 14;    ///< number of pairs that may wait in any scene
+        std::uint64_t waiting_part = 16;        ///< one changed pair per this many pairs may wait to be merged
+        std::uint64_t min_waiting = 1 << 14;    ///< changed pairs that may wait in a scene of any size
         std::size_t share_queries = 64;         ///< queries per share
-        std::size_t exact_part = 1 << 14;       ///< pairs of enlarged boxes that a thread filters at once
+        std::size_t exact_part = 1 << 14;       ///< pairs of enlarged boxes that a thread filters at a time
     } scene;
 };
 

@@ -1,8 +1,8 @@
 // WorkQueue: a first-in, first-out queue of items, and the loop of the threads that work on them.
 //
 // Invariants
-//   An item is waiting, or in work by exactly one thread, or gone.
-//   A thread in run() takes the first waiting item, or the first one that its `choose` accepts.
+//   An added item waits, then exactly one thread works on the item, then the queue removes it.
+//   A thread in run() takes the first waiting item, or the first waiting item that its `choose` accepts.
 //   After close() or finish() no thread waits for items.
 #pragma once
 
@@ -52,15 +52,15 @@ public:
         run([](Items& waiting) { return waiting.begin(); }, never, work);
     }
 
-    /// Calls work(item) for one chosen item after another. choose(waiting) returns an iterator to the next item, or
-    /// waiting.end() if no waiting item can be worked on yet. `choose` runs with the queue locked, and again after `retry`.
+    /// Calls work(item) for one item after another, which `choose` selects: choose(waiting) returns an iterator to the next item, or
+    /// waiting.end() if no waiting item can be worked on yet. `choose` runs with the queue locked; it is called again after `retry`.
     template <typename Choose, typename Work>
     void run(const Choose& choose, std::chrono::nanoseconds retry, const Work& work) {
         constexpr std::chrono::hours rarely(1);
         run(choose, retry, work, Idle{rarely, [] {}});
     }
 
-    /// A thread in run() calls `task` each time that no item has waited for `after`. `task` runs with the queue unlocked.
+    /// A thread in run() calls `task` whenever no item waits for the time `after`. `task` runs with the queue unlocked.
     template <typename Task>
     struct Idle {
         std::chrono::nanoseconds after;
@@ -81,7 +81,7 @@ public:
             done.splice(done.begin(), in_work_, next);
             if (is_idle()) idle_.notify_all();
             lock.unlock();
-            done.clear();  // not with the queue locked: an item's destructor may take long, or add another item
+            done.clear();  // with the queue unlocked: an item's destructor may take long, or add another item
             lock.lock();
         }
     }
@@ -102,7 +102,7 @@ public:
         return waiting_.size();
     }
 
-    /// Returns copies of all items: those in work, then those that wait, first to last.
+    /// Returns copies of all items: first the items in work, then the waiting items in their order.
     std::list<Item> items() const {
         const std::lock_guard lock(mutex_);
         Items all = in_work_;
@@ -135,7 +135,7 @@ private:
         changed_.notify_all();
     }
 
-    /// Waits for an item and moves it to those in work; returns in_work_.end() where run() is to return.
+    /// Waits for an item and moves the item to `in_work_`. Returns in_work_.end() if run() must return.
     template <typename Choose, typename Task>
     typename Items::iterator take(std::unique_lock<std::mutex>& lock, const Choose& choose,
                                   std::chrono::nanoseconds retry, const Idle<Task>& idle) {

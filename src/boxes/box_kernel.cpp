@@ -40,7 +40,7 @@ bool are_boxes_simd(std::span<const Box3f> boxes) {
 
 #else
 
-/// Returns true if all are valid boxes. `out`: one entry for each box if `copied`, otherwise empty.
+/// Returns true if all boxes are valid. `out`: one entry for each box if `copied`, otherwise empty.
 template <bool copied>
 bool check_boxes_of(std::span<const Box3f> boxes, std::span<Entry> out) {
     const hn::FixedTag<float, 4> floats;
@@ -199,7 +199,7 @@ bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> 
 
 constexpr std::size_t prefetched_pairs = 12;  // distance at which boxes are prefetched
 
-/// refused_pairs(), without a branch on the result of overlaps(a, b).
+/// Implements refused_pairs() without a branch on the result of overlaps(a, b).
 template <typename Real, typename Overlaps>
 std::size_t refused_of(const DoubtfulPairs& doubtful, const BoxesOfPairs<Real>& boxes, const Overlaps& overlaps,
                        std::uint32_t* out) {

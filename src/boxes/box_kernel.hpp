@@ -42,7 +42,7 @@ struct OutwardRounding {
     std::array<double, 4> origin = {0, 0, 0, 0};
     double margin = 0;
 
-    /// Specification of round_boxes(). Sets only the bounds.
+    /// Specification of round_boxes() for one box. Sets only the bounds of the entry.
     Entry entry(const Box3d& box, double padding) const {
         const double widening = margin / 2 + padding;
         Entry entry{};
@@ -63,7 +63,7 @@ private:
     }
 };
 
-/// True if is_box() is true of all boxes.
+/// True if all boxes are valid (is_box()).
 bool are_boxes(std::span<const Box3f> boxes);
 bool are_boxes(std::span<const Box3d> boxes);
 
@@ -88,7 +88,7 @@ struct BoxesOfPairs {
     const Box<Real>& b(const Pair& pair) const { return second[pair.b - second_begin]; }
 };
 
-/// PairRule::refused() for boxes that are a pair if they overlap.
+/// Implements PairRule::refused() for boxes that are a pair if they overlap.
 std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<float>& boxes, std::uint32_t* out);
 std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<double>& boxes, std::uint32_t* out);
 

@@ -141,7 +141,7 @@ void load_rounded(const BoxSet<Real>& set, const OutwardRounding& rounding, std:
             some[i] = boxes[index];
             paddings[i] = padding.empty() ? 0 : padding[index];
         }
-        // Ignores whether the boxes are valid: that was checked when the octree was built.
+        // Ignores the result of the check: the boxes were checked when the octree was built.
         const auto used = std::span<const double>(paddings).first(padding.empty() ? 0 : count);
         (void)round_boxes(std::span<const Box<Real>>(some).first(count), used, rounding,
                           std::span(rounded).first(count));

@@ -24,7 +24,7 @@
 
 namespace octopair {
 
-/// Boxes of objects.
+/// Boxes of some objects, in the caller's arrays.
 struct PlainBoxes {
     std::span<const Box3f> boxes;
     std::uint32_t first_object = 0;          ///< number of the first object; the other numbers follow it
@@ -42,13 +42,13 @@ public:
     virtual std::size_t size() const = 0;
     /// Writes the entries [begin, begin + out.size()). Returns false if one of the objects is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
-    /// Returns the boxes [begin, begin + count), unchecked, if their entries have the same bounds and no bit in their masks;
-    /// otherwise no boxes.
+    /// Returns the boxes [begin, begin + count) without a check of their values. Returns no boxes unless the entries have the boxes' bounds
+    /// and no bit in their masks.
     virtual PlainBoxes plain(std::size_t begin, std::size_t count) const {
         (void)begin, (void)count;
         return {};
     }
-    /// Writes the bounds of the entries at `positions`, unchecked.
+    /// Writes the bounds of the entries at `positions`, without a check of their values.
     virtual void pick(std::span<const std::size_t> positions, std::span<Entry> out) const = 0;
 };
 
@@ -76,7 +76,7 @@ private:
     static constexpr std::size_t most = 255;
 };
 
-/// Numbers of the first object of each set in this process, if the process has a part of the sets. Error messages add them.
+/// Index of the first object of each set, if this process has only a part of the sets. Error messages add this index to their own.
 struct SetBegins {
     std::uint64_t first = 0, second = 0;
 };

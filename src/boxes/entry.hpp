@@ -38,7 +38,7 @@ inline bool overlap(const Entry& a, const Entry& b) {
     return true;
 }
 
-/// A length on each axis.
+/// Depth of an overlap on each axis.
 using Depths = std::array<float, 3>;
 
 /// Bound on the growth of entries by rounding: on each axis `part` of the coordinates plus `base`.

@@ -13,7 +13,7 @@
 
 namespace octopair {
 
-/// The pair rule of octopair/objects.hpp. `reach`: margin + (padding_a + padding_b).
+/// True if the pair rule of octopair/objects.hpp holds. `reach`: margin + (padding_a + padding_b).
 inline bool within_reach(const Box3d& a, const Box3d& b, double reach) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!(std::max(a.min[axis] - b.max[axis], b.min[axis] - a.max[axis]) <= reach)) return false;
@@ -21,7 +21,7 @@ inline bool within_reach(const Box3d& a, const Box3d& b, double reach) {
     return true;
 }
 
-/// Pairs, some of which are in doubt.
+/// Pairs of overlapping entries. Those in doubt may overlap only because entries are rounded outward, so they need an exact test.
 struct DoubtfulPairs {
     std::span<const Pair> pairs;
     std::span<const std::uint32_t> positions;  ///< positions of the pairs in doubt
@@ -39,18 +39,18 @@ public:
     virtual std::uint32_t second_begin() const = 0;
     /// True if any two overlapping entries are a pair, without a further test.
     virtual bool exact() const = 0;
-    /// Returns the slack of entries: a hit that is no deeper needs the test is_pair().
+    /// Returns the slack of entries. Entries that overlap by no more than the slack need the test is_pair().
     virtual RoundingSlack slack() const = 0;
-    /// True if the objects are a pair by the caller's own numbers.
+    /// True if the caller's own boxes, before any rounding, are a pair.
     virtual bool is_pair(std::uint32_t a, std::uint32_t b) const = 0;
-    /// Writes the positions of the doubtful pairs that are no pairs to `out`, in the same order, and returns their number.
+    /// Writes the positions of the doubtful pairs that fail the test is_pair() to `out`, in the same order, and returns their number.
     /// Requires: `out` has room for all positions.
     virtual std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const = 0;
     /// Sets the bounds of entries whose object is set.
     virtual void load_bounds(std::span<Entry> entries) const = 0;
 
 protected:
-    /// refused(), by a call of is_pair() for each pair.
+    /// Does what refused() does, with a call of is_pair() for each pair in doubt.
     std::size_t refused_one_by_one(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
         std::size_t count = 0;
         for (std::size_t i = 0; i < doubtful.size(); ++i) {

@@ -1,6 +1,6 @@
-// SIMD version of sort_rows(). Highway compiles it for each instruction set. The place of an object is the number of smaller
-// objects in its row. So no branch depends on the order of the objects. If two objects of a row are equal, which only a fault
-// elsewhere can cause, they get one place, and the sum of all places is too small. Then the specification sorts the rows again.
+// SIMD version of sort_rows(). Highway compiles this file for each instruction set. The place of an object is the number of smaller
+// objects in its row, so no branch depends on the order of the objects. A row has equal objects only after a fault elsewhere. Equal
+// objects would get one place, so the sum of all places would be too small. Then sort_rows_scalar() sorts the rows again.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/row_sort.cpp"
 #include <hwy/foreach_target.h>
@@ -41,13 +41,13 @@ HWY_INLINE std::size_t count_less(const Lanes& lanes, const Lanes& value, std::s
     return std::size_t(std::popcount(std::uint32_t(bits[0]) & ((1u << count) - 1)));
 }
 
-/// Returns false if two objects of a row are equal. Then not all pairs are written.
+/// Sorts the rows. Returns false if two objects of a row are equal; then `out` lacks some pairs.
 bool sort_rows_simd(const PairRows& rows, Pair* out) {
     const SignedWords d;
     const auto& [seconds, first_begin, ends, first_object] = rows;
     std::uint32_t begin = first_begin;
     const std::size_t lanes = hn::Lanes(d);
-    std::size_t missing = 0;  // sum of the places 0, 1, 2, ... of each row, less the sum of the places that were given
+    std::size_t missing = 0;  // sum of all places in the rows, minus the sum of the places that objects got
     for (std::size_t row = 0; row < ends.size(); ++row) {
         const std::uint32_t a = first_object + std::uint32_t(row);
         const std::uint32_t* const objects = seconds + begin;

@@ -11,12 +11,12 @@ namespace octopair {
 
 inline constexpr std::size_t max_row_at_once = 32;  ///< maximum number of pairs of a row for sort_rows()
 
-/// The second objects of consecutive rows.
+/// The second objects of the pairs in consecutive rows.
 struct PairRows {
     const std::uint32_t* seconds;
     std::uint32_t begin;                  ///< position in `seconds` of the first row's first object
     std::span<const std::uint32_t> ends;  ///< for each row, position in `seconds` behind its last object
-    std::uint32_t first_object;           ///< first object of the first row's pairs; the next row has the next object
+    std::uint32_t first_object;           ///< first object of all pairs in the first row; later rows count up from it
 };
 
 /// Sorts the second objects of each row, and writes the pairs of all rows to `out`, row after row.

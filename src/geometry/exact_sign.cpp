@@ -1,4 +1,4 @@
-// Signs that float64 cannot decide, computed with integers, in the fewest words that hold the determinant. Most meshes have
+// Computes signs that float64 cannot decide, with integers of the fewest words that hold the determinant. Most meshes have
 // coordinates of 12 to 24 bits, so two words suffice.
 #include "geometry/exact_sign.hpp"
 

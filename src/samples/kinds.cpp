@@ -185,7 +185,7 @@ Placer plates(const Population& population) {
     };
 }
 
-/// Every 20th object is a sheet; the others are small cubes. Their sides are chosen for 0.4 n pairs of a sheet and a cube.
+/// Every 20th object is a sheet; the other objects are small cubes. Their sides give 0.4 n pairs of a sheet and a cube.
 template <std::size_t axis>
 Placer sheets(const Population& population) {
     const double thickness = 0.4 / count(population);
