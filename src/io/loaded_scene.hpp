@@ -36,7 +36,7 @@ struct LoadedShapes {
 
     static constexpr std::uint32_t default_groups = 1, default_mask = 0xFFFFFFFF;
 
-    /// Appends the objects of `others`. Their objects, shapes and parents get the numbers after those of this scene.
+    /// Appends the objects of `others`. Their numbers, and those of their shapes and parents, follow the numbers of this scene.
     void append(LoadedShapes&& others);
 };
 
@@ -47,7 +47,7 @@ struct LoadedTriangles {
     std::vector<std::string> owner_names;  ///< names of all nodes, including nodes without triangles
     ObjectDetails owner_details;           ///< empty, or a row per node
 
-    /// Appends the triangles of `others`. Their triangles and owners get the numbers after those of this scene.
+    /// Appends the triangles of `others`. Their numbers, and those of their owners, follow the numbers of this scene.
     void append(LoadedTriangles&& others);
 };
 
@@ -58,8 +58,8 @@ struct LoadedScene {
     std::uint64_t objects = 0;  ///< number of objects in each frame
     std::uint64_t frames = 1;
     bool moving = false;  ///< true for a file with a frame axis, even with one frame
-    /// Bound on the coordinates of meshes that were rounded to float32, in the file or by its reader. 0: none were. Coordinates before
-    /// transforms count, too, in the unit of the world, and so do the translations of the transforms.
+    /// Bound on the coordinates of meshes that the file or its reader rounded to float32; 0: no coordinates were rounded. The bound also
+    /// covers coordinates before their transforms, in the unit of the world, and the translations of the transforms.
     double largest_rounded = 0;
     std::vector<std::string> names;  ///< empty, or one name per object; an object without a name has an empty one
     ObjectDetails details;           ///< empty, or a row per object

@@ -1,4 +1,4 @@
-// ObjectDetails: what scene files say about objects besides their names, as a table of texts. Equal texts are stored once.
+// ObjectDetails: details of objects from scene files, besides names, as a table of texts. Equal texts are stored once.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ constexpr std::string_view word_of(Detail detail) {
 /// One text per detail, in the order of all_details. An unknown detail is empty.
 using DetailTexts = std::array<std::string, all_details.size()>;
 
-/// Details of n objects, or of none if no file has any.
+/// Details of n objects, or of no object if no file has details.
 struct ObjectDetails {
     std::vector<std::string> words = {{}};                            ///< distinct texts; the first is empty
     std::vector<std::array<std::uint32_t, all_details.size()>> rows;  ///< n rows of indices into `words`
@@ -54,7 +54,7 @@ public:
     explicit DetailsBuilder(ObjectDetails& table);
 
     void add(const DetailTexts& texts);
-    /// Appends `count` objects. Objects without a row in `others` have no details.
+    /// Appends `count` objects with the rows of `others`. Objects beyond the last row of `others` get no details.
     void append(const ObjectDetails& others, std::size_t count);
 
 private:
@@ -64,14 +64,14 @@ private:
     std::unordered_map<std::string, std::uint32_t> numbers_;  // index of each word
 };
 
-/// Returns the names of materials, joined by ", ". After eight names, the rest becomes "...".
+/// Returns the names of materials, joined by ", ". If there are more than eight names, "..." stands for the rest.
 std::string joined_materials(const std::set<std::string>& names);
 
 /// Counts of objects of two sets.
 struct DetailCounts {
     std::size_t first, second;
 };
-/// Appends the details of a second set to those of a first set. If only one set has details, those of the other set are empty.
+/// Appends the details of a second set to the details of a first set. If a set has no details, its objects get empty rows.
 void append_details(ObjectDetails& first, const ObjectDetails& second, const DetailCounts& counts);
 
 }  // namespace octopair::io

@@ -41,7 +41,7 @@ Buffer<To> join_boxes(std::span<LoadedScene> scenes, std::uint64_t objects) {
         }
         first += scene.objects;
         scene.check_mapped();
-        scene.boxes = {};  // frees each input at once: at most one copy exists besides the result
+        scene.boxes = {};  // frees each input at once: besides the result, at most one copy exists
     }
     return joined;
 }
@@ -74,7 +74,7 @@ void join_part(std::span<LoadedScene> scenes, std::optional<Part> LoadedScene::*
     }
 }
 
-/// Returns the axis and the unit that all scenes have. Unknown if they differ.
+/// Returns the axis and the unit that all scenes have in common. A value that differs becomes unknown.
 SceneSpace joint_space(std::span<const LoadedScene> scenes) {
     SceneSpace space = scenes.front().space;
     for (const LoadedScene& scene : scenes) {

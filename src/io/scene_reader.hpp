@@ -19,7 +19,7 @@ enum class MeshObjects : std::uint8_t { node, triangle };
 struct SceneContent {
     MeshObjects objects = MeshObjects::node;
     bool shapes = false;  ///< also read shapes or triangles, for the narrow phase
-    /// Called with the part of a file that is read, from 0 to 1, or empty. Only readers of plain meshes call it.
+    /// Receives the part of a file that is read, from 0 to 1; or empty. Only readers of plain meshes call it.
     std::function<void(double)> progress = {};
 };
 

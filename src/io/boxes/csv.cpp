@@ -52,7 +52,7 @@ Verdict parse_number(std::string_view field, double& value) {
     return Verdict::number;
 }
 
-/// Returns whether a field that is no number was possibly meant as one: its first letter or digit is a digit.
+/// Returns whether a field that is no number was possibly meant as a number: its first letter or digit is a digit.
 bool resembles_number(std::string_view field) {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     const auto first = std::find_if(field.begin(), field.end(), [&](char c) { return is_letter(c) || is_digit(c); });

@@ -36,7 +36,7 @@ void refuse_integers(const NpyHeader& header, std::string_view file) {
                              type_text(header.type)));
 }
 
-/// Turns the bytes of each number round.
+/// Reverses the order of the bytes of each number.
 template <typename Real>
 void turn_bytes(std::span<Real> values) {
     for (Real& value : values) {
@@ -48,14 +48,14 @@ void turn_bytes(std::span<Real> values) {
     }
 }
 
-/// A place in the array of a file: from number `first` on.
+/// A position in the array of a file: the number with index `first`.
 struct ArrayPlace {
     const InputFile& file;
     const NpyHeader& header;
     std::uint64_t first;
 };
 
-/// Reads numbers that follow each other in a file.
+/// Reads consecutive numbers of a file.
 template <typename Real>
 void read_numbers(const ArrayPlace& from, std::span<Real> values, const std::stop_token& stop) {
     const std::uint64_t begin = from.header.data_offset + from.first * sizeof(Real);
@@ -68,7 +68,7 @@ void read_numbers(const ArrayPlace& from, std::span<Real> values, const std::sto
     }
 }
 
-/// Returns the numbers of boxes or spheres.
+/// Returns the numbers of boxes or spheres as one span, without a copy.
 template <typename Real, typename Object>
 std::span<Real> as_numbers(std::span<Object> objects) {
     static_assert(sizeof(Object) % sizeof(Real) == 0);
@@ -134,7 +134,7 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
     return boxes;
 }
 
-/// Maps boxes that are adjacent in the file. Returns nothing if they are not, or are few.
+/// Maps boxes that are adjacent in the file. Returns nothing if the boxes are not adjacent, or are too few for a mapping.
 template <typename Real>
 std::optional<Buffer<Box<Real>>> NpyScene::map_boxes(const ObjectRows& rows, std::uint64_t min_mapped) const {
     const std::uint64_t objects = rows.end - rows.begin;
@@ -169,7 +169,7 @@ void NpyScene::read_columns(const ObjectRows& rows, std::span<Real> values, cons
     }
 }
 
-/// Reads boxes or spheres that follow each other in the file.
+/// Reads boxes or spheres that are adjacent in the file.
 template <typename T>
 void NpyScene::read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
     using Real = std::conditional_t<std::is_same_v<T, Box3d> || std::is_same_v<T, Sphere<double>>, double, float>;

@@ -183,7 +183,7 @@ std::pair<std::string_view, std::uint64_t> find_text(std::string_view bytes, std
     return {bytes.substr(begin, std::size_t(length)), begin + length};
 }
 
-/// Sets the type and the order of bytes.
+/// Sets the type and the byte order of a header from the text of the key 'descr'.
 void set_type(NpyHeader& header, std::string_view descr, std::string_view file) {
     header.big_endian = descr.starts_with('>');
     for (const TypeRow& row : types) {
@@ -195,7 +195,7 @@ void set_type(NpyHeader& header, std::string_view descr, std::string_view file) 
            fmt::format("its array is of type {}; '<f4' or '<f8' is needed: save array.astype('<f8')", quoted(descr)));
 }
 
-/// Throws: Error{bad_input} if integers are not as octopair writes them.
+/// Throws: Error{bad_input} if integers are big endian or in Fortran order, because octopair never writes such integers.
 void check_layout(const NpyHeader& header, std::string_view file) {
     if (header.type == NpyType::float32 || header.type == NpyType::float64) return;
     if (header.big_endian) refuse(file, "its integers are big endian; save array.astype('<u4')");

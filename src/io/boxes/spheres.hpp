@@ -25,7 +25,7 @@ struct Sphere {
 template <typename Real>
 Box<Real> box_of_sphere(const Sphere<Real>& sphere);
 
-/// Position of spheres in a file, for messages, and what stops their conversion.
+/// Position of spheres in a file, for messages, and the stop token of their conversion.
 struct SpherePlace {
     std::string_view file;
     std::uint64_t begin = 0;  ///< object number of the first sphere

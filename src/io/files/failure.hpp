@@ -1,4 +1,4 @@
-// Errors of this layer: one line that begins with the file.
+// Errors of the readers and writers of files: each message is one line that begins with the file.
 #pragma once
 
 #include <string>

@@ -25,7 +25,7 @@ struct Mapping {
     std::atomic<std::byte*> begin = nullptr, end = nullptr;  // begins with a page; null if the slot is free
     std::atomic<bool> lost_page = false;                     // the file was shortened, or the disk failed
     Descriptor file;
-    FileState state;  // when the file was opened
+    FileState state;  // state of the file when it was opened
     std::string path;
 };
 

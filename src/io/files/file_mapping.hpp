@@ -3,10 +3,10 @@
 //
 // Invariants
 //   Mappings are private: a write changes neither the file nor what other processes see.
-//   If a file is written or shortened while it is mapped, the numbers in memory change at any time. So code that reads a number again must
-//   accept any value. check_mapping() then throws, as InputFile::check_unchanged() does.
+//   If another program writes or shortens a mapped file, the numbers in memory change at any time. So code that reads a number again
+//   must accept any value. After such a change check_mapping() throws, as InputFile::check_unchanged() does.
 //   Pages that cannot be read, such as those that a shortened file loses, get bytes of 0xFF, which are NaN as floats. Without this, the
-//   system would end the process by SIGBUS. The rest of the last page that a shortened file keeps reads as zeros.
+//   system would end the process by SIGBUS. If a shortened file ends within a page, the rest of the page reads as zeros.
 #pragma once
 
 #include <cstddef>

@@ -71,7 +71,7 @@ FileState FileState::of(const Descriptor& file, const std::string& path) {
 
 void FileState::check_same_content(const FileState& now, const std::string& path) const {
     if (now.size < size) refuse(path, truncated);
-    // Adding or removing a name changes the attribute time, too. So this time counts only if the number of names is the same.
+    // Adding or removing a name changes the attribute time, too. So the attribute time counts only if the number of names is equal.
     const bool same = now.size == size && now.content_time == content_time &&
                       (now.attribute_time == attribute_time || now.links != links);
     if (!same) refuse(path, "the file changed while it was read; run again when no program writes to it");

@@ -1,7 +1,7 @@
 // InputFile: a regular file, or the copy of a stream, that is open for reading.
 //
-// A file that other programs write meanwhile is refused, because its content may be partly old and partly new. It may be deleted, and
-// another file may be renamed over it: the open file keeps its content.
+// If another program writes to the file while it is open, reading fails, because the content may be partly old and partly new. Another
+// program may delete the file, or rename another file over it: the open file keeps its content.
 //
 // Streams can be read only once: standard input ("-"), pipes, and sockets. Their content is copied into memory when they are
 // opened first. Later openings of the same path get the copy.
@@ -24,12 +24,12 @@ struct FileState {
     std::uint64_t size = 0;
     std::uint64_t links = 0;          ///< number of names in directories
     std::int64_t content_time = 0;    ///< nanoseconds since 1970: last change of the content
-    std::int64_t attribute_time = 0;  ///< last change of the content, name or attributes. Programs cannot set it
+    std::int64_t attribute_time = 0;  ///< last change of content, name or attributes. Programs cannot set it
 
     /// Throws: Error{io_failed} that begins with `path`.
     static FileState of(const Descriptor& file, const std::string& path);
-    /// Throws: Error{bad_input} that begins with `path` if the content may have changed between this state and `now`. A change within
-    /// the same tick of the system's clock (4 ms) that keeps the size is not seen.
+    /// Throws: Error{bad_input} that begins with `path` if the content may have changed between this state and `now`. Does not notice a
+    /// change that keeps the size and happens within one tick of the system's clock (4 ms).
     void check_same_content(const FileState& now, const std::string& path) const;
 };
 
@@ -50,8 +50,8 @@ public:
     int descriptor() const { return descriptor_.number(); }
 
     /// Fills `out` with the bytes from `offset` on.
-    /// Throws: Error{bad_input} if the file is too short, or as check_unchanged(); Error{io_failed}; Error{cancelled} soon after a stop
-    /// request.
+    /// Throws: Error{bad_input} if the file is too short or was changed (check_unchanged()); Error{io_failed}; Error{cancelled} soon
+    /// after a stop request.
     void read(std::uint64_t offset, std::span<std::byte> out, const std::stop_token& stop = {}) const;
 
     /// Throws: Error{bad_input} if another program has changed the content since the file was opened. With Changes::allowed, does
@@ -68,8 +68,8 @@ private:
 /// Returns whether `path` is "-", or exists and is a pipe, a socket or a terminal.
 bool is_stream(const std::string& path);
 
-/// Returns a descriptor of a file in memory with the content of a stream, read to its end. Each process reads a stream once.
-/// Requires: is_stream(path).
+/// Returns a descriptor of a file in memory with the whole content of a stream. The first call reads the stream to its end; later calls
+/// in this process reuse the content.
 /// Throws: Error{io_failed, resource_limit}.
 /// Thread safety: any thread may call it. Blocks until the writer closes the stream.
 Descriptor open_stream_copy(const std::string& path);

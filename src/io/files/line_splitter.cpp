@@ -11,7 +11,7 @@ LineSplitter::LineSplitter(std::string_view text) : text_(text) {
 }
 
 bool LineSplitter::find_carriage_return() {
-    // A search beyond the line costs less than a search in each line.
+    // Searching far beyond the line once costs less than a separate search in each of the next lines.
     constexpr std::size_t beyond = 1 << 14;
     const std::size_t begin = std::max(carriage_return_, next_);
     const std::string_view searched = text_.substr(begin, line_feed_ - begin + beyond);

@@ -1,7 +1,7 @@
 // LineSplitter: the lines of a text, for all readers of text.
 //
 // - A UTF-8 byte order mark at the begin of the text is left out.
-// - A line ends with LF, CR LF, or CR. If the first line ends with CR alone, an LF after a CR ends a line of its own.
+// - A line ends with LF, CR LF, or CR. If the first line ends with CR alone, each CR and each LF ends a line of its own.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ public:
     bool next() {
         if (next_ >= text_.size()) return false;
         ++number_;
-        // Searched once per LF, so that a text without LF costs a single search.
+        // The search runs once per LF, not once per line, so that a text without LF is searched only once.
         if (line_feed_ < next_) line_feed_ = std::min(text_.find('\n', next_), text_.size());
         if (carriage_return_ < line_feed_ && find_carriage_return()) {
             end_line(carriage_return_);
@@ -39,7 +39,7 @@ public:
     std::size_t offset() const { return std::min(next_, text_.size()); }
 
 private:
-    /// Returns whether a CR ends the line before its LF, and finds it.
+    /// Returns whether the line ends with a CR before the next LF. Sets `carriage_return_` to the place of the next CR.
     bool find_carriage_return();
     void end_line(std::size_t carriage_return);
 
@@ -51,7 +51,7 @@ private:
     bool cr_alone_ = false;            // true if the first line ends with CR alone
 };
 
-/// Returns a number that the number of lines does not exceed.
+/// Returns an upper bound on the number of lines.
 std::uint64_t most_lines(std::string_view text);
 
 }  // namespace octopair::io

@@ -124,7 +124,7 @@ std::uint32_t number_at(std::string_view bytes, std::size_t offset) {
     return number;
 }
 
-/// Returns whether the outer object of a JSON text has a key, such as "asset". The text may be cut.
+/// Returns whether the outer object of a JSON text has a key, such as "asset". The end of the text may be missing.
 bool has_key(std::string_view text, std::string_view key) {
     int depth = 0;
     for (std::size_t at = 0; at < text.size(); ++at) {
@@ -140,7 +140,7 @@ bool has_key(std::string_view text, std::string_view key) {
     return false;
 }
 
-/// glTF has keys that no JSON scene has. JSON scenes have no mark: their keys may occur in glTF, too.
+/// Returns whether a JSON text is glTF: it has keys that no JSON scene has. JSON scenes have no mark, because glTF may have their keys.
 bool is_gltf(std::string_view text) {
     return text.starts_with('{') &&
            (has_key(text, "asset") || has_key(text, "bufferViews") || has_key(text, "accessors"));
@@ -153,7 +153,7 @@ std::string_view step_format(std::string_view text) {
     return skip_white(text.substr(schema + 11)).substr(0, 40).find("IFC") == std::string_view::npos ? ".step" : ".ifc";
 }
 
-/// A DXF file is pairs of lines, a code and a value. It begins with a section, maybe after comments (code 999).
+/// Returns whether a text is DXF: pairs of lines, a code and a value, that begin with a section, maybe after comments (code 999).
 bool is_dxf(std::string_view text) {
     for (int pair = 0; pair < 20; ++pair) {
         std::array<std::string_view, 2> lines;
@@ -174,7 +174,7 @@ bool is_iges(std::string_view text) {
     return text.size() > 80 && text[72] == 'S' && text.substr(73, 7).find_first_not_of(" 01") == std::string_view::npos;
 }
 
-/// "OFF", maybe with the letters that say what a vertex has, as a word or followed by a number.
+/// Returns whether a text begins with the keyword "OFF", or with ST, C or N before it, and continues with a number or a comment.
 bool is_off(std::string_view text) {
     for (const std::string_view name : {"STOFF"sv, "COFF"sv, "NOFF"sv, "CNOFF"sv, "OFF"sv}) {
         if (!text.starts_with(name) || text.size() <= name.size()) continue;
@@ -205,7 +205,7 @@ bool is_number(std::string_view word) {
     return error == std::errc() && end == word.data() + word.size();
 }
 
-/// All whole lines of the head must be of OBJ, with at least one vertex.
+/// Returns whether a text is OBJ: all whole lines of the head are lines of OBJ, and at least one of them is a vertex.
 bool is_obj(std::string_view text) {
     constexpr std::string_view keywords = " v vt vn vp f l p o g s mg usemtl mtllib usemap shadow_obj trace_obj ";
     bool vertex = false;
@@ -226,7 +226,7 @@ bool is_obj(std::string_view text) {
     return vertex;
 }
 
-/// A ZIP archive begins with a name. Returns the format that the names in the head and in the directory show.
+/// Returns the format that the names of files in a ZIP archive show. The names are in the head and in the directory of the archive.
 std::string_view zip_format(const FileHead& head) {
     const std::string_view bytes = head.bytes;
     if (!bytes.starts_with(FileHead::zip_mark) || bytes.size() < 30) return {};
@@ -266,7 +266,7 @@ bool is_legal_packing(const Packing& packing, std::string_view ending) {
     return ending == ".blend" && (packing.bytes[0] == '\x1f' || packing.bytes[0] == '\x28');
 }
 
-/// HTML, or XHTML after an XML declaration and comments.
+/// Returns whether a text is HTML, or XHTML after an XML declaration and comments.
 bool is_html(std::string_view text) {
     const std::string begin = in_lower_case(text);
     return begin.starts_with("<!doctype html") || first_element(begin) == "html" || first_element(begin) == "head";
@@ -282,14 +282,14 @@ bool is_wide_ascii(std::string_view bytes, std::size_t high) {
     return bytes.size() >= 16;
 }
 
-/// The properties that all programs write, a dictionary of a power of 2, and the size: unknown, or less than 2^48.
+/// Returns whether bytes begin as an LZMA file: usual properties, a dictionary of a power of 2, and a size that is unknown or below 2^48.
 bool is_lzma(std::string_view bytes) {
     if (bytes.size() < 14 || !bytes.starts_with("\x5d\0\0"sv)) return false;
     const std::string_view size = bytes.substr(5, 8);
     return size == "\xff\xff\xff\xff\xff\xff\xff\xff"sv || (size.ends_with("\0\0"sv) && size != "\0\0\0\0\0\0\0\0"sv);
 }
 
-/// Returns whether a reader of octopair reads files with this ending, or nobody is known to. Readers of Assimp know UTF-16.
+/// Returns whether octopair reads files with this ending itself, or no reader is known. The other files go to Assimp, which reads UTF-16.
 bool is_for_octopair(std::string_view ending) {
     const FileFormat* const format = format_with_ending(ending);
     return format == nullptr ? ending != ".xml" : format->reader == FormatReader::octopair;

@@ -21,7 +21,7 @@ struct FileHead {
     static constexpr std::string_view zip_mark = "PK\x03\x04";
 };
 
-/// Returns the beginning of a file as text for a search: UTF-8, without byte order mark. UTF-16 is narrowed to ASCII.
+/// Returns the beginning of a file as text for a search: UTF-8 without byte order mark. Text in UTF-16 is narrowed to ASCII.
 std::string text_of(const FileHead& head);
 
 /// Returns the encoding that a byte order mark shows, "UTF-16" or "UTF-32", or an empty text. ASCII in UTF-16 is recognised without a mark.
@@ -31,15 +31,15 @@ std::string_view wide_encoding(std::string_view bytes);
 /// no mark is known.
 std::string_view marked_format(const FileHead& head);
 
-/// Returns what a wrapped file is and what to do, for example "is compressed with gzip; ...". Empty: the file is not wrapped. Formats that
-/// are wrapped themselves, such as 3MF (ZIP), are not. `ending`: that of the file's name, in lower case.
+/// Returns what a wrapped file is and what to do, for example "is compressed with gzip; ...". Empty: the file is not wrapped. A format
+/// that is itself an archive, such as 3MF (ZIP), does not count as wrapped. `ending`: ending of the file's name, in lower case.
 std::string wrapping_of(const FileHead& head, std::string_view ending);
 
-/// Returns what a file without the mark of a format is, and what to do, for example "is a program, not a model; ...". Empty: nothing is
-/// recognised. `ending`: that of the file's name, in lower case.
+/// Returns what a file without the mark of a format is, and what to do, for example "is a program, not a model; ...". Empty: the content
+/// is not recognised. `ending`: ending of the file's name, in lower case.
 std::string foreign_content(const FileHead& head, std::string_view ending);
 
-/// Returns the name of the first element of an XML text, or an empty text. The text may be cut.
+/// Returns the name of the first element of an XML text, or an empty text. The end of the XML text may be missing.
 std::string_view first_element(std::string_view text);
 
 }  // namespace octopair::io

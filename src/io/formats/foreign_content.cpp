@@ -1,4 +1,4 @@
-// Content that is no model at all.
+// Recognises content that is no model at all, such as programs, pictures and letters (foreign_content()).
 #include "io/formats/content_marks.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct ForeignMark {
 
 constexpr std::string_view no_scene = "give octopair a model, or boxes as .npy or .csv";
 
-/// Marks of at least four bytes. So files of formats without a mark hardly begin with them.
+/// Marks have at least four bytes. So a file of a format without a mark is unlikely to begin with one of them.
 constexpr auto foreign_marks = std::to_array<ForeignMark>({
     {"\x7f\x45LF"sv, "is a program (ELF), not a model"},
     {"SQLite format 3\0"sv, "is a database (SQLite), not a model; export the model from the program that wrote it"},
@@ -60,7 +60,7 @@ std::string_view take_line_of(std::string_view& text) {
     return line;
 }
 
-/// "MZ", and at the place that the header names, "PE".
+/// Returns whether a file is a Windows program: it begins with "MZ", and has "PE" at the place that its header names.
 bool is_windows_program(std::string_view bytes) {
     if (!bytes.starts_with("MZ") || bytes.size() < 64) return false;
     const auto low = static_cast<unsigned char>(bytes[60]), high = static_cast<unsigned char>(bytes[61]);
@@ -86,7 +86,7 @@ std::string_view armour_name(std::string_view text) {
     return end == std::string_view::npos ? std::string_view() : text.substr(0, end);
 }
 
-/// Whole lines of at least 60 characters of base64. No text of a model has them: numbers are separated.
+/// Returns whether a text begins with whole lines of at least 60 characters of base64. No model has such lines: spaces separate numbers.
 bool is_base64(std::string_view text) {
     std::size_t lines = 0;
     while (text.find('\n') != std::string_view::npos) {
@@ -102,7 +102,7 @@ bool is_base64(std::string_view text) {
     return lines > 0;
 }
 
-/// Returns the line of the first conflict marker, from 1; 0 if there is none.
+/// Returns the number of the line with the first conflict marker of a version control system, from 1; 0 if there is none.
 std::size_t conflict_line(std::string_view text) {
     for (std::size_t line = 1; !text.empty(); ++line) {
         if (take_line_of(text).starts_with("<<<<<<< ")) return line;

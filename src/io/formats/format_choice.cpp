@@ -51,7 +51,7 @@ FileHead read_head(const std::string& path) {
     return head;
 }
 
-/// Returns the beginning of a file; nothing if it cannot be read, and for streams with an ending, which are read once by their reader.
+/// Returns the beginning of a file. Returns nothing if it cannot be read, and for streams with an ending, which only their reader may read.
 /// Throws: Error{io_failed} for a stream without an ending.
 std::optional<FileHead> head_of(const std::string& path) {
     if (lacks_name(path)) return read_head(path);
@@ -59,7 +59,7 @@ std::optional<FileHead> head_of(const std::string& path) {
     try {
         return read_head(path);
     } catch (const Error&) {
-        return std::nullopt;  // the reader gives the reason
+        return std::nullopt;  // when the reader opens the file, it gives the reason
     }
 }
 
@@ -119,7 +119,7 @@ void refuse_wrapped(const std::string& path, const FileHead& head) {
     if (!wrapping.empty()) refuse(path, wrapping);
 }
 
-/// Refuses text without the mark of its format. Assimp makes objects out of some such texts, or none without an error.
+/// Refuses text that lacks the mark of its format. From such text, Assimp makes wrong objects, or no objects without an error.
 void refuse_without_mark(const std::string& path, std::string_view ending, const FileHead& head) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 6> marks = {{{".ase", "*3DSMAX_ASCIIEXPORT"},
                                                                                      {".ask", "*3DSMAX_ASCIIEXPORT"},
@@ -132,7 +132,7 @@ void refuse_without_mark(const std::string& path, std::string_view ending, const
     refuse(path, fmt::format("has no {} at its beginning, which files of its format ({}) have", found->second, ending));
 }
 
-/// Where a text states its version: after a key, up to one of the ends.
+/// Place where a text states its version: after `key`, up to the first of the ends.
 struct VersionPlace {
     std::string_view ending, key, ends;
 };

@@ -26,12 +26,12 @@ struct KnownFormat {
     /// Ending that names the format: that of the file, or if the content shows another format, the first ending of that one.
     std::string ending;
     bool marked = false;      ///< true if the content has the mark of the format
-    bool by_content = false;  ///< true if the content decided, against the name or without one
-    bool misnamed = false;    ///< true if the ending of the name is that of another format
+    bool by_content = false;  ///< true if the content decided, because the name has another ending or no ending
+    bool misnamed = false;    ///< true if the ending of the name belongs to another format
 };
 
-/// Returns the format of a scene file. Reads its beginning, if possible; of a stream with an ending, and of a file that cannot be opened,
-/// it judges only the name.
+/// Returns the format of a scene file. Reads the beginning of the file, if possible. For a stream with an ending, and a file that cannot
+/// be opened, only the name decides.
 /// Throws: Error{io_failed} for a stream without an ending.
 KnownFormat known_format(const std::string& path);
 inline std::string format_ending(const std::string& path) { return known_format(path).ending; }
@@ -45,7 +45,7 @@ void check_not_wrapped(const std::string& path);
 /// Returns a warning "FILE: ..." about a file whose name has the ending of another format, or an empty text.
 std::string name_warning(const std::string& path);
 
-/// Format of a scene file by its reader. Meshes are `mesh`, also those that Assimp reads. Readers refuse `unknown` files.
+/// Format of a scene file by its reader. `mesh` includes the files that Assimp reads. Readers refuse files of format `unknown`.
 enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 
 /// Format of a file of pairs or collisions. `npy` is an array of pairs; the others are rows of text.
@@ -72,13 +72,13 @@ struct SceneSpace {
     bool operator==(const SceneSpace&) const = default;
 };
 
-/// Returns the axes and the unit that the format of a scene file prescribes, after its reader.
+/// Returns the axes and the unit that the format of a scene file prescribes, as they are after its reader.
 SceneSpace format_space(const std::string& path);
 
 /// Returns whether a file is a building model in IFC.
 bool is_ifc_file(const std::string& path);
 
-/// Returns whether a scene file may name other files that must be read too (glTF, JSON).
+/// Returns whether a scene file may refer to other files that must be read too (glTF, JSON).
 bool may_name_files(const std::string& path);
 
 /// Returns the version of a scene file within its format, for example "IFC2X3", "1.4.1" or "binary"; empty if the beginning of the file

@@ -26,7 +26,7 @@ constexpr std::string_view from_cad = "export it as glTF, OBJ or STL from a CAD 
                            from_points = "octopair needs surfaces or boxes; save boxes or spheres as .npy or .csv",
                            no_model = "give octopair a model, or boxes as .npy or .csv";
 
-// The axis changes are those of Assimp 5.2. tests/io/assimp_axes_test.cpp has a block in these formats.
+// The axis changes were found with Assimp 5.2. tests/io/assimp_axes_test.cpp checks them with a block in each of these formats.
 constexpr auto formats = std::to_array<FileFormat>({
     own("NumPy", ".npy"),
     own("CSV", ".csv"),

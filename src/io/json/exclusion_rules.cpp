@@ -19,7 +19,7 @@ using nlohmann::json;
 
 std::string item(const std::string& place, std::size_t i) { return fmt::format("{}[{}]", place, i); }
 
-/// Reads the patterns for one object of a pair: a pattern for its name, or an object with a pattern for each detail that matters.
+/// Reads the patterns for one object of a pair: either a pattern for its name, or a JSON object with a pattern for each tested detail.
 ColumnPatterns patterns(const JsonFields& rule, std::string_view key) {
     const json& value = rule.required(key);
     if (value.is_string()) return {rule.text(key)};

@@ -34,7 +34,7 @@ public:
     /// `place` is the beginning of messages, for example "FILE: object 3 ('ball')".
     JsonFields(const nlohmann::json& object, std::string place);
 
-    /// Throws: Error{bad_input} for a key of the object that is not in `known`.
+    /// Throws: Error{bad_input} if the object has a key that is not in `known`.
     void allow(std::span<const std::string_view> known) const;
     void allow(std::initializer_list<std::string_view> known) const { allow(std::span(known.begin(), known.size())); }
 

@@ -164,7 +164,7 @@ private:
     const std::stop_token& stop_;
     LoadedShapes loaded_;
     std::vector<std::string> names_;
-    ObjectDetails details_;  // parents
+    ObjectDetails details_;  // only the parents of the objects
     DetailsBuilder details_builder_{details_};
     std::map<std::string, std::uint32_t, std::less<>> shape_numbers_;
     std::unordered_map<std::string, std::uint32_t> parents_;
@@ -193,7 +193,7 @@ shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& sce
 #endif
 }
 
-/// Returns each text once, in order. Objects may name the same file.
+/// Returns the texts in order, without repetitions. Several objects may name one file, which is read only once.
 std::vector<std::string> distinct(std::vector<std::string> texts) {
     std::unordered_set<std::string> seen;
     std::erase_if(texts, [&](const std::string& text) { return !seen.insert(text).second; });
@@ -213,9 +213,9 @@ LoadedScene read_json_scene(const std::string& path, const std::stop_token& stop
     Buffer<char> text{std::size_t(file.size())};
     file.read(0, std::as_writable_bytes(text.span()), stop);
     const std::filesystem::path directory = std::filesystem::path(path).parent_path();
-    LoadedScene meshes;  // warnings and bounds of the mesh files that the scene names
+    LoadedScene meshes;  // collects warnings and bounds of the mesh files that the scene names
     const auto load = [&](const std::string& name) { return load_mesh((directory / name).string(), meshes, stop); };
-    if (text.size() == 0) refuse(path, "is empty");  // it was not when its format was decided
+    if (text.size() == 0) refuse(path, "is empty");  // the file had content when its format was decided
     LoadedScene scene = parse_json_scene({text.data(), text.size()}, path, load, stop);
     scene.largest_rounded = meshes.largest_rounded;
     scene.warnings = distinct(std::move(meshes.warnings));

@@ -48,8 +48,8 @@ private:
     const std::stop_token* stop_;
 };
 
-/// Builds the values that the parser finds. Refuses repeated keys and deep nesting. The callback of json::parse() could do so, too, but
-/// then the time of the parser grows as the square of the length of arrays.
+/// Builds the values that the parser finds. Refuses repeated keys and deep nesting. A callback of json::parse() could refuse them, too,
+/// but makes the time of the parser quadratic in the length of arrays.
 class ValueBuilder {
 public:
     ValueBuilder(std::string_view file, int max_levels) : file_(file), max_levels_(max_levels) {}
@@ -82,11 +82,11 @@ private:
     /// An array or an object that has begun and not ended.
     struct Level {
         json* value;
-        json* next = nullptr;  ///< in an object: the place of the value after the last key; null if the value is there
+        json* next = nullptr;  ///< in an object: place of the value after the last key; null if it has its value
         const std::string* key = nullptr;  ///< in an object: the last key
     };
 
-    /// Adds a value. Returns it in its place.
+    /// Adds a value to the innermost open array or object. Returns a reference to the stored value.
     json& place_value(json&& value) {
         if (levels_.empty()) return root_ = std::move(value);
         Level& level = levels_.back();
@@ -163,7 +163,7 @@ json parse_json(std::string_view text, std::string_view file, const std::stop_to
 std::string shown_text(std::string_view text) {
     constexpr std::size_t max_bytes = 60;
     std::string shown(text.substr(0, max_bytes));
-    // The cut must not leave part of a UTF-8 character at the end.
+    // Cutting must not leave a part of a UTF-8 character at the end.
     while (text.size() > max_bytes && !shown.empty() && (shown.back() & 0x80) != 0) shown.pop_back();
     std::replace_if(
         shown.begin(), shown.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');

@@ -36,7 +36,7 @@ public:
     std::vector<Change> compare(std::span<const Pair> pairs, std::span<const Finding> findings,
                                 const CollisionNames& names);
 
-    /// Returns the lines of the old collisions that no new one has matched, in their order.
+    /// Returns the lines of the old collisions that match no new collision, in their order.
     std::vector<std::string_view> gone() const;
     /// Returns the number of collisions by change. Requires: compare() has had all new collisions.
     ChangeCounts counts() const;
@@ -45,12 +45,12 @@ private:
     explicit Baseline(bool join) : join_(join) {}
     void read(std::string_view text, std::string_view file, const std::stop_token& stop);
     std::string key_of(Pair pair, const CollisionNames& names) const;
-    /// Matches a new collision with the first unmatched old one. Returns whether there was one.
+    /// Matches a new collision with the first unmatched old collision that has the key. Returns whether there was such a collision.
     bool match(std::string key, CollisionClass collision_class);
 
     bool join_;
     std::vector<std::string> lines_;
-    std::vector<bool> matched_;  // per line
+    std::vector<bool> matched_;  // for each line: true if a new collision matched it
     /// Unmatched lines by key, the last line first. The first character of a key is the contact state (baseline.cpp).
     std::unordered_map<std::string, std::vector<std::size_t>> unmatched_;
     ChangeCounts counts_;

@@ -1,5 +1,5 @@
 // CollisionRecord: one row of a collision result, and the columns that a row has in .jsonl and .csv. Every writer and every reader of
-// rows goes through them.
+// rows uses these columns.
 // Start here to add a new column of results.
 //
 // A column is a name and a member of CollisionRecord. The type of the member says how its value is written and read.
@@ -50,7 +50,7 @@ struct CollisionRecord {
 
 /// Returns row `i`. It borrows the texts of `form`.
 CollisionRecord record_of(const CollisionRows& rows, std::size_t i, const CollisionForm& form);
-/// Returns the collision of a row that was read. What the row does not know is 0.
+/// Returns the collision of a row that was read. Values that the row does not have are 0.
 Finding finding_of(const CollisionRecord& row);
 
 /// Names of the columns of one object.
@@ -90,17 +90,17 @@ void for_each_json_column(Row& row, const Visit& visit) {
     visit(columns_of_b.open, row.b.open);
 }
 
-// Values that only .csv has, because a field of a table has no lists. Each is part of a row. Borrowed.
+// Values that only .csv has: a field of .csv cannot hold a list, so each value is one part of a list in the row. Borrowed.
 template <typename Row>
 struct CsvContactCount {
     Row& row;
 };
-/// The points of the contacts; for objects that are apart, the nearest points.
+/// The points of the contacts. For objects that are apart: the nearest points.
 template <typename Row>
 struct CsvPoints {
     Row& row;
 };
-/// "a", "b", "ab" or nothing: which objects are open.
+/// Names the objects that are open meshes: "a", "b", "ab" or nothing.
 template <typename Row>
 struct CsvOpen {
     Row& row;
@@ -131,12 +131,12 @@ void for_each_csv_column(Row& row, const Visit& visit) {
 
 /// Returns the row as a JSON object.
 std::string json_line(const CollisionRecord& row);
-/// Returns the fields of a row, quoted if needed. `shown` says of each column of for_each_csv_column() whether the file has it.
+/// Returns the fields of a row, quoted if needed. `shown`: for each column of for_each_csv_column(), true if the file has the column.
 std::string csv_line(const CollisionRecord& row, const std::vector<bool>& shown);
 /// Returns `text` as a field of a .csv file, quoted if needed (RFC 4180). Invalid UTF-8 becomes U+FFFD.
 std::string csv_field(std::string_view text);
 
-/// Reads a row. Keys that are no columns are left to the caller. The record borrows the texts of the JSON object.
+/// Reads a row. Ignores keys that are no columns: the caller handles them. The record borrows the texts of the JSON object.
 /// Throws: Error{bad_input} if `a` or `b` is missing, or if a column has a value that its type cannot have.
 CollisionRecord read_collision(const JsonFields& row);
 

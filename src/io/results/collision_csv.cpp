@@ -59,7 +59,7 @@ struct CsvPlace {
     refuse(field.place, fmt::format("'{}' is not {}", shown_text(field.text), wanted));
 }
 
-/// Returns the number that the whole field is.
+/// Returns the value of a field that is one number. Refuses a field with anything else.
 template <typename Number>
 Number csv_number(const CsvPlace& field, std::string_view wanted) {
     Number value{};
@@ -69,7 +69,7 @@ Number csv_number(const CsvPlace& field, std::string_view wanted) {
     return value;
 }
 
-/// Returns the points "x y z;x y z".
+/// Returns the points of a field "x y z;x y z".
 std::vector<Point3d> points_in(const CsvPlace& field) {
     std::vector<Point3d> points;
     for (std::string_view rest = field.text; !rest.empty();) {

@@ -74,7 +74,7 @@ constexpr std::string_view word_of(Change change) {
     return words[std::size_t(change)];
 }
 
-/// Returns whether objects of this class meet. Then depth and contacts are defined; otherwise the distance is.
+/// Returns whether objects of this class meet. If they meet, depth and contacts are defined; otherwise the distance is defined.
 constexpr bool meet(CollisionClass collision_class) { return collision_class > CollisionClass::clearance; }
 
 }  // namespace octopair::io

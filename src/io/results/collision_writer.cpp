@@ -68,7 +68,7 @@ public:
     void finish() override { out_->commit(); }
 
 private:
-    /// Details that no object has, and changes without a baseline, have no column.
+    /// Returns whether the file has a column. Details that no object has, and changes without a baseline, get no column.
     bool is_shown(std::string_view name) const {
         if (name == "change") return form_.changes;
         for (const Detail detail : all_details) {

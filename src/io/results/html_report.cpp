@@ -45,7 +45,7 @@ std::string name_of(const ObjectNames& names, std::uint32_t object) {
     return names.owners.empty() ? name : fmt::format("{}, triangle {}", name, names.triangle(object));
 }
 
-/// Returns how bad a collision is, for the order of the rows.
+/// Returns a number that is larger for worse collisions. It orders the rows.
 double severity_of(const CollisionRecord& row) {
     if (row.collision_class == CollisionClass::duplicate) return std::numeric_limits<double>::infinity();
     if (row.distance) return -*row.distance;
@@ -140,7 +140,7 @@ void HtmlReport::write(const CollisionRows& rows) {
     }
 }
 
-/// Drops all rows but the worst max_rows.
+/// Drops all rows except the max_rows worst ones.
 void HtmlReport::keep_worst() {
     if (kept_.size() <= max_rows) return;
     const auto is_worse = [](const Row& x, const Row& y) {
@@ -216,7 +216,7 @@ void HtmlReport::write_object_list(std::size_t set, TextNumbers& words) {
     out_->write("]");
 }
 
-/// Writes the boxes of the objects without a row. If there are more than max_others, only every stride-th one is written.
+/// Writes the boxes of the objects without a row. If there are more than max_others, only one in `stride` of them is written.
 void HtmlReport::write_others() {
     for (const auto& set : named_) others_ += std::uint64_t(std::count(set.begin(), set.end(), false));
     const std::uint64_t stride = others_ / max_others + 1;

@@ -2,9 +2,9 @@
 //
 // - The page has a summary, a table that groups, sorts and filters, and drawings of the boxes from three sides. On the screen, the
 //   viewer is in place of the drawings, if the build has the viewer.
-// - The page is in the folder report_page. The data are JSON in <script> elements. "<" is always escaped, so a name is always text.
-// - The page has at most `max_rows` rows: the worst ones, and of equal ones the first. Others are counted. The page says so.
-//   Duplicates come first, then pairs by depth, then pairs by distance.
+// - The page is in the folder report_page. Its data are JSON in <script> elements. "<" is always escaped, so a name cannot become HTML.
+// - The page has at most `max_rows` rows: the worst collisions, and of equally bad ones the first. The page states how many are left out.
+//   Duplicates are the worst, then pairs by depth, then pairs by distance.
 // - Rows are kept in memory until finish(): at most 2 * max_rows.
 // - At most `max_others` objects without a row are drawn. The page says so.
 #pragma once

@@ -32,13 +32,13 @@ namespace octopair::io {
 /// Returns the path of one frame's file: NAME.npy and 7 give NAME.000007.npy.
 std::string frame_path(const std::string& path, std::uint64_t frame);
 
-/// Names of the sets that a and b of a pair are numbers in. Each is empty, or has one name per object. Borrowed.
+/// Names of the objects of the set of `a` and the set of `b`. Each array is empty, or has one name per object. Borrowed.
 struct PairNames {
     const std::vector<std::string>* a = nullptr;
     const std::vector<std::string>* b = nullptr;
 };
 
-// All rows of a call have the same beginning, for example a frame and an event.
+// All rows of one call begin with the same text, for example a frame and an event.
 
 /// Writes rows `BEGINa,b`. `begin` includes its commas. Requires: `begin` has at most 64 characters.
 void write_csv_rows(OutputStream& out, std::string_view begin, std::span<const Pair> pairs);
@@ -76,7 +76,7 @@ std::unique_ptr<PairWriter> make_jsonl_writer(std::unique_ptr<OutputStream> out,
 /// Returns the writer for the ending of `path`. Throws: what result_format() throws; Error{io_failed}.
 std::unique_ptr<PairWriter> make_file_writer(const std::string& path, bool moving, const PairNames& names);
 
-/// What happens to a pair in a frame. An end comes before a begin of the same frame.
+/// Change of a pair in a frame. In one frame, ends come before begins.
 enum class Event : std::uint8_t { end, begin };
 
 /// Returns the format by the ending of the path: csv or jsonl. Throws: Error{usage} for another ending.

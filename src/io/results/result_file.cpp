@@ -124,7 +124,7 @@ void add_npy_rows(const InputFile& file, const NpyHeader& header, ResultBuilder&
     }
 }
 
-/// Returns the frame in the name of a file that has one, as pairs.000003.npy does.
+/// Returns the frame number in the name of a file, such as 3 in pairs.000003.npy; nothing if the name has none.
 std::optional<std::uint32_t> frame_in(std::string_view path) {
     constexpr std::size_t least_digits = 6;
     path.remove_suffix(std::min(path.size(), std::string_view(".npy").size()));
@@ -143,7 +143,7 @@ std::string_view without_mark(std::string_view text) {
     return text;
 }
 
-/// Returns the end of the first line. A line break between quotes ends no line of a table.
+/// Returns the end of the first line. In a table, a line break between quotes does not end the line.
 std::size_t end_of_line(std::string_view text, bool table) {
     bool quoted = false;
     for (std::size_t i = 0; i < text.size(); ++i) {

@@ -25,11 +25,11 @@ struct ResultFrame {
 struct ResultRow {
     Pair pair = {};  ///< a < b
     std::uint32_t frame = 0;
-    std::optional<Event> event = {};  ///< none: the pair collides in the frame
+    std::optional<Event> event = {};  ///< nothing: the pair collides in the frame
     Finding finding = {};
 };
 
-/// Collects rows, then gives the collisions of any frame. A row takes 20 bytes, and a finding if its class is known.
+/// Collects rows, then returns the collisions of any frame. A row takes 20 bytes, and a finding if the class of the row is known.
 class ResultFrames {
 public:
     void add(ResultRow row);
@@ -71,7 +71,7 @@ private:
 struct ResultFile {
     ResultFrames frames;
     bool moving = false;            ///< true if rows or the name of the file have a frame number
-    std::uint64_t first_frame = 0;  ///< frame number in the name, as in pairs.000003.npy: that of the first of `frames`
+    std::uint64_t first_frame = 0;  ///< number of the first of `frames`: that in the name, as in pairs.000003.npy
     std::map<std::uint32_t, std::string> names;
     std::uint64_t objects = 0;  ///< 1 more than the largest index
 };

@@ -1,4 +1,4 @@
-// ResultFrames.
+// ResultFrames: sorts rows by frame, or events by pair, and returns the collisions of a frame.
 #include "io/results/result_file.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ bool ResultFrames::finish() {
 }
 
 void ResultFrames::pair_up_events() {
-    // The order puts an end before a begin of the same frame. So a pair with both events collides in this frame.
+    // The order puts an end before a begin of the same frame. So a pair that ends and begins in one frame collides in this frame.
     const auto key = [](const Entry& row) { return std::tuple(row.pair, row.frame, row.event, row.finding); };
     std::sort(rows_.begin(), rows_.end(), [&](const Entry& x, const Entry& y) { return key(x) < key(y); });
     bool open = false;
@@ -50,7 +50,7 @@ void ResultFrames::pair_up_events() {
 }
 
 void ResultFrames::append(ResultFrame& frame, Pair pair, std::uint32_t finding) const {
-    // A pair that a frame has twice counts once.
+    // A pair that a frame contains twice counts as one pair.
     if (!frame.pairs.empty() && frame.pairs.back() == pair) return;
     frame.pairs.push_back(pair);
     if (!findings_.empty()) frame.findings.push_back(finding == no_finding ? Finding{} : findings_[finding]);
