@@ -1,4 +1,4 @@
-// The check of AC3D files.
+// Checks AC3D files for content that Assimp reads wrongly (correct_ac3d()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace octopair::io {
 
 namespace {
 
-/// An object, as far as it was read.
+/// The part of an object that was read so far.
 struct Ac3dObject {
     std::size_t line = 0;
     std::size_t vertices = 0;
@@ -73,7 +73,7 @@ private:
         return number;
     }
 
-    /// Returns whether the flags of a surface say that it is a line.
+    /// Returns whether the flags of a surface mark it as a line.
     static bool is_line(std::string_view line) {
         std::string_view word = take_list_word(line);
         const int base = word.starts_with("0x") || word.starts_with("0X") ? 16 : 10;
@@ -99,7 +99,7 @@ private:
         for (; count > 0 && !text_.empty(); --count) object_.vertex_lines.push_back(take_line());
     }
 
-    /// Skips the characters of a text. Assimp takes a line of it that begins with a keyword for a part of the model.
+    /// Skips the characters of a text. If a line of the text begins with a keyword, Assimp reads this line as a part of the model.
     void skip_data(std::size_t characters) {
         constexpr std::array<std::string_view, 11> keywords = {"MATERIAL", "OBJECT",  "kids", "loc", "rot", "name",
                                                                "numvert",  "numsurf", "SURF", "mat", "refs"};
@@ -142,10 +142,10 @@ private:
                        object_.line, object_.turned ? "a rotation (rot)" : "children"));
         }
         if (in_place && object_.lines) move_vertices();
-        begin_object();  // so that a second line "kids" has no effect
+        begin_object();  // so that a second line "kids" of the object has no effect
     }
 
-    /// Moves the vertices of an object to their places.
+    /// Adds the place of an object to the coordinates of its vertices.
     void move_vertices() {
         for (const std::string_view line : object_.vertex_lines) {
             const std::vector<double> at = numbers_of(line).numbers;
@@ -169,10 +169,10 @@ private:
     }
 
     const std::string& path_;
-    std::string_view whole_text_, text_;  // text_: what was not read
+    std::string_view whole_text_, text_;  // text_: the part that was not read yet
     std::size_t line_ = 0, materials_ = 0;
     Ac3dObject object_;
-    std::vector<std::pair<std::string_view, std::string>> corrections_;  // a part of the text, and what belongs there
+    std::vector<std::pair<std::string_view, std::string>> corrections_;  // part of the text, and its replacement
 };
 
 }  // namespace

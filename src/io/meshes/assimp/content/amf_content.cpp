@@ -1,4 +1,4 @@
-// The check of AMF files.
+// Checks AMF files, and writes them in a form that Assimp reads rightly (correct_amf()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <cmath>
@@ -49,7 +49,7 @@ public:
     }
 
 private:
-    /// Assimp joins objects by their ids. So an id must be there, and must be unique, if there is more than one object.
+    /// Assimp joins objects by their ids. So if a file has several objects, each needs an id that no other object has.
     void check_id(const XmlElement& element) {
         const auto id = element.attribute("id");
         const auto [first, is_new] = ids_.try_emplace(std::string(id.value_or("")), element.line());
@@ -97,7 +97,7 @@ private:
         out_.close();
     }
 
-    /// Writes the triangles of all volumes. `first_vertices`: of each mesh, and the end.
+    /// Writes the triangles of all volumes as one. `first_vertices`: number of the first vertex of each mesh, then the number of vertices.
     void write_volume(const std::vector<XmlElement>& meshes, const std::vector<std::size_t>& first_vertices) {
         bool open = false;
         for (std::size_t i = 0; i < meshes.size(); ++i) {
@@ -147,7 +147,7 @@ private:
         if (name == "deltax" || name == "deltay" || name == "deltaz") write_number(name, only_number(value));
     }
 
-    /// Scales and mirrors are not part of AMF, but slicers write them.
+    /// Refuses scales and mirrors of an instance: they are not part of AMF, but slicers write them.
     static void check_placement(const XmlElement& value) {
         const std::string_view name = value.name();
         const bool scale = name.starts_with("scale"), mirror = name.starts_with("mirror");

@@ -1,4 +1,4 @@
-// The check of COLLADA files.
+// Checks COLLADA files, and writes them in a form that Assimp reads rightly (correct_collada()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ Vector direction_of(const XmlElement& element, const Vector& vector) {
     return {vector[0] / length, vector[1] / length, vector[2] / length};
 }
 
-/// Returns the matrix of a <lookat>: the position of an eye, the point that it looks at, and a direction that is up.
+/// Returns the matrix of a <lookat>. Its numbers are the position of an eye, the point that the eye looks at, and the direction that is up.
 std::vector<double> lookat_matrix(const XmlElement& element) {
     const std::vector<double> n = collada_numbers(element, 9);
     const Vector back = direction_of(element, {n[0] - n[3], n[1] - n[4], n[2] - n[5]});
@@ -86,7 +86,7 @@ void write_transform(const XmlElement& element, XmlWriter& out) {
     out.close();
 }
 
-/// Returns the materials that an instance binds, as a key.
+/// Returns the materials that an instance binds, as one text. Instances with equal texts share a copy of their geometry.
 std::string binding_of(const XmlElement& instance) {
     std::string key;
     for (const XmlElement& binding : instance.children("bind_material")) {
@@ -130,7 +130,7 @@ public:
         constexpr std::array dropped = {
             "asset"sv,          "extra"sv,           "library_geometries"sv,    "library_nodes"sv,
             "library_lights"sv, "library_cameras"sv, "library_visual_scenes"sv, "scene"sv};
-        const std::string scene = scene_text();  // first, because it says how often a geometry is needed
+        const std::string scene = scene_text();  // before the geometries: it counts the copies of each geometry
         for (const XmlElement& child : root.children()) {
             if (!is_one_of(child.name(), dropped)) copy(child);
         }
@@ -142,7 +142,7 @@ public:
     }
 
 private:
-    /// Copies an element, but for the data of programs in <extra>.
+    /// Copies an element with its children, but leaves out <extra>, which has the data of programs.
     void copy(const XmlElement& element) {
         out_.open(element.name());
         for (const auto& [name, value] : element.attributes()) out_.attribute(name, value);
@@ -211,7 +211,7 @@ private:
         return text;
     }
 
-    /// Returns the id of a reference within the file, such as "#id"; empty for one to another file.
+    /// Returns the id of a reference within the file, such as "#id"; empty for a reference to another file.
     static std::string reference(const XmlElement& element) {
         const std::string_view url = element.attribute("url").value_or("");
         return std::string(url.starts_with('#') ? url.substr(1) : std::string_view());

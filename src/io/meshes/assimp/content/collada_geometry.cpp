@@ -52,7 +52,7 @@ std::optional<XmlElement> input_with(const XmlElement& element, std::string_view
     return std::nullopt;
 }
 
-/// Returns the places of x, y and z in the values of an accessor: those of the params X, Y and Z, or else of the first three with a name.
+/// Returns the places of x, y and z among the values of an accessor: the params named X, Y and Z, or else the first three with any name.
 std::array<std::size_t, 3> places_of(const XmlElement& accessor) {
     std::array<std::size_t, 3> named{}, first{};
     std::size_t found = 0, params = 0, position = 0;
@@ -97,7 +97,7 @@ std::vector<double> positions_of(const XmlElement& source) {
     return positions;
 }
 
-/// Faces or lines of a group of primitives: their numbers of corners, and the corners as indices of positions.
+/// Faces or lines of a group of primitives: the number of corners of each, and all corners as indices of positions.
 struct Primitives {
     std::vector<double> sizes, corners;
 
@@ -107,7 +107,7 @@ struct Primitives {
     }
 };
 
-/// Returns the indices of positions in a <p>, one of each corner.
+/// Returns the indices of positions in a <p>, one index for each corner.
 std::vector<double> corners_of(const XmlElement& p, std::size_t stride, std::size_t offset, std::size_t positions) {
     const std::vector<double> indices = collada_numbers(p);
     if (indices.size() % stride != 0)
@@ -122,7 +122,7 @@ std::vector<double> corners_of(const XmlElement& p, std::size_t stride, std::siz
     return corners;
 }
 
-/// Appends the primitives of a <p> of a strip, a fan or a polygon.
+/// Appends the primitives of a <p> that has one strip, fan or polygon.
 void add_run(std::string_view group, const std::vector<double>& run, Primitives& primitives) {
     if (group == "polygons" && !run.empty()) {
         primitives.sizes.push_back(double(run.size()));
@@ -139,7 +139,7 @@ void add_run(std::string_view group, const std::vector<double>& run, Primitives&
     }
 }
 
-/// Appends the primitives of a <p> that has many.
+/// Appends the primitives of a <p> that has many primitives.
 void add_many(const XmlElement& group, const XmlElement& p, const std::vector<double>& corners,
               Primitives& primitives) {
     std::vector<double> sizes;
@@ -159,7 +159,7 @@ void add_many(const XmlElement& group, const XmlElement& p, const std::vector<do
     primitives.corners.insert(primitives.corners.end(), corners.begin(), corners.end());
 }
 
-/// Returns the place of the index of the position among the indices of a corner, and how many indices a corner has.
+/// Returns the place of the position's index among the indices of a corner, and the number of indices of a corner.
 std::pair<std::size_t, std::size_t> offset_and_stride(const XmlElement& group, const XmlElement& input) {
     std::size_t stride = 1;
     for (const XmlElement& other : group.children("input")) stride = std::max(stride, whole_or(other, "offset", 0) + 1);
@@ -232,7 +232,7 @@ void write_group(const XmlElement& group, const Primitives& primitives, XmlWrite
     out.close();
 }
 
-/// Returns the <source> with the positions of a group of primitives, and the input that has their indices.
+/// Returns the <source> with the positions of a group of primitives, and the input that refers to this source.
 std::pair<XmlElement, XmlElement> position_source(const XmlElement& group, const XmlElement& mesh) {
     if (const auto input = input_with(group, "VERTEX")) {
         const XmlElement vertices = referred(*input, mesh);

@@ -1,4 +1,4 @@
-// The check of DirectX files.
+// Checks DirectX files for content that Assimp reads wrongly (correct_directx()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t x_header_bytes = 16, max_nested_frames = 1000;
 
-/// A frame, as far as it was read.
+/// The part of a frame that was read so far.
 struct Frame {
     bool meshes = false;
     std::size_t frames = 0;
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    /// Reads an object of the file, or of a frame. `parent` gets what it is.
+    /// Reads an object of the file, or of a frame. Notes in `parent` which kind of object it was.
     void check_object(const TextToken& type, Frame& parent) {
         if (type.text == "}" || type.text == ";" || type.text == ",") return;
         if (type.text == "{") {
@@ -84,7 +84,7 @@ private:
         --depth_;
     }
 
-    /// Puts a space after each comma.
+    /// Puts a space after each comma, so that Assimp does not read the comma as a decimal point.
     void check_matrix() {
         for (TextToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
             if (token.text.empty() || token.text == "{") tokens_.refuse(token.line, "the matrix does not end");
@@ -111,7 +111,7 @@ private:
         check_parts(faces);
     }
 
-    /// Reads three coordinates. A comma within a coordinate is a decimal point: a semicolon ends each coordinate.
+    /// Skips three coordinates. A comma within a coordinate is a decimal point, because each coordinate ends with a semicolon.
     void skip_vector() {
         for (int axis = 0; axis < 3; ++axis) {
             while (tokens_.peek().text == ";" || tokens_.peek().text == ",") tokens_.next();
@@ -123,7 +123,7 @@ private:
         }
     }
 
-    /// Reads what follows the faces of a mesh, to its end.
+    /// Reads the parts of a mesh after its faces, up to the end of the mesh.
     void check_parts(std::size_t faces) {
         for (TextToken token = tokens_.next(); token.text != "}"; token = tokens_.next()) {
             if (token.text.empty()) tokens_.refuse(token.line, "the mesh does not end: the file is cut");
@@ -167,7 +167,7 @@ private:
         }
     }
 
-    /// Skips another object, with all that is in it.
+    /// Skips an object of any other type, with its content.
     void skip_other(const TextToken& type) {
         bool meshes = false;
         TextToken token = tokens_.next();
@@ -202,7 +202,7 @@ private:
     Frame file_;
     std::size_t depth_ = 0;
     LeftOut left_out_;
-    std::vector<std::pair<std::size_t, std::string>> insertions_;  // offset in the file, and what belongs there
+    std::vector<std::pair<std::size_t, std::string>> insertions_;  // offset in the file, and the text to insert there
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The check of DXF files.
+// Checks DXF files, and writes them in a form that Assimp reads rightly (correct_dxf()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
@@ -36,10 +36,10 @@ class DxfWriter {
 public:
     DxfWriter() { text_ = "0\nSECTION\n2\nENTITIES\n"; }
 
-    /// Requires: 2 to 4 corners.
+    /// Appends a line (2 corners) or a face (3 or 4 corners). Requires: 2 to 4 corners.
     void add(std::string_view layer, std::span<const DxfPoint> corners) {
         text_.append(corners.size() == 2 ? "0\nLINE\n8\n" : "0\n3DFACE\n8\n");
-        // Assimp skips what follows a brace at the beginning of a value.
+        // If a value begins with a brace, Assimp skips the entities after it. So a parenthesis replaces the brace.
         if (layer.starts_with('{')) {
             text_.append("(").append(layer.substr(1));
         } else {
@@ -59,10 +59,10 @@ private:
     std::string text_;
 };
 
-/// Where entities are, and which blocks have them.
+/// Place of entities in the world, and the blocks that contain them.
 struct DxfPlace {
     DxfTransform transform;
-    std::vector<std::string_view> blocks;  ///< from the file inwards
+    std::vector<std::string_view> blocks;  ///< from the outermost to the innermost block
 };
 
 class DxfExpansion {
@@ -76,7 +76,7 @@ public:
     }
 
 private:
-    /// Adds entities; inserted blocks come last, as Assimp orders them.
+    /// Adds entities. The entities of inserted blocks come last, because Assimp orders them so.
     void add_entities(const std::vector<DxfEntity>& entities, const DxfPlace& place) {
         std::vector<const DxfEntity*> inserts;
         for (std::size_t i = 0; i < entities.size(); ++i) {
@@ -117,7 +117,7 @@ private:
         }
     }
 
-    /// A curve with a thickness is a surface.
+    /// Returns whether a type is a curve. A curve with a thickness is a surface.
     static bool is_curve(std::string_view type) { return type == "LWPOLYLINE" || type == "CIRCLE" || type == "ARC"; }
 
     void add_face(const DxfEntity& entity, const DxfTransform& transform) {
@@ -130,7 +130,7 @@ private:
         if (corners.size() > 1) out_.add(entity.text(8), corners);
     }
 
-    /// Adds the edges of a line, or its faces if it has a thickness. `own`: from the coordinates of the points to those of the block.
+    /// Adds the edges of a line, or its faces if it has a thickness. `own`: transform from the coordinates of the points to the block's.
     void add_line(const DxfEntity& entity, const DxfPoints& points, const DxfTransform& own,
                   const DxfTransform& transform) {
         const double thickness = entity.number(39, 0, path_);

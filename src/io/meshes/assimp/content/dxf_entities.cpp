@@ -80,7 +80,7 @@ public:
     }
 
 private:
-    /// Puts the entity that was read where it belongs.
+    /// Adds the entity that was read to its block, or to the entities of the file. Begins or ends a block or a section.
     void end_entity() {
         DxfEntity entity = std::move(entity_);
         entity_ = {};
@@ -166,7 +166,7 @@ DxfTransform DxfTransform::scale(const DxfPoint& by) {
 DxfTransform DxfTransform::turn(double degrees) {
     double sine = 0, cosine = 1;
     const double quarters = std::remainder(degrees, 360) / 90;
-    if (quarters == std::round(quarters)) {  // exact
+    if (quarters == std::round(quarters)) {  // quarter turns are exact, without the rounding errors of sine and cosine
         constexpr std::array<double, 5> sines = {0, -1, 0, 1, 0}, cosines = {-1, 0, 1, 0, -1};
         sine = sines[std::size_t(quarters + 2)];
         cosine = cosines[std::size_t(quarters + 2)];

@@ -11,13 +11,13 @@ namespace octopair::io {
 
 using DxfPoint = std::array<double, 3>;
 
-/// A code and its value.
+/// The smallest unit of a DXF text: a code, which gives the meaning, and a value.
 struct DxfGroup {
     int code = 0;
     std::string_view value;
 };
 
-/// An entity, such as 3DFACE, with its groups. Requires: the text lives.
+/// An entity, such as 3DFACE, with its groups. Requires: the text outlives the entity.
 class DxfEntity {
 public:
     std::string_view type;
@@ -43,9 +43,9 @@ struct DxfBlock {
 struct DxfFile {
     std::map<std::string, DxfBlock, std::less<>> blocks;
     std::vector<DxfEntity> entities;
-    bool ends = false;  ///< the file has its end mark
+    bool ends = false;  ///< true if the file has its end mark
 
-    /// Requires: `text` outlives the result. `path` is for messages.
+    /// Parses a DXF text. Requires: `text` outlives the result. `path` is for messages.
     /// Throws: Error{bad_input} if a section with entities does not end, because the file is cut.
     static DxfFile parse(const std::string& path, std::string_view text);
 };
@@ -56,10 +56,10 @@ public:
     DxfTransform() = default;
     static DxfTransform move(const DxfPoint& by);
     static DxfTransform scale(const DxfPoint& by);
-    /// Turns around z.
+    /// Returns the rotation around z by an angle.
     static DxfTransform turn(double degrees);
-    /// From the coordinates of an entity to those of the world, for the direction of extrusion of the entity (arbitrary axis algorithm).
-    /// A direction of length 0 changes nothing.
+    /// Returns the transform from an entity's coordinates to world coordinates, for its direction of extrusion (arbitrary axis
+    /// algorithm). For a direction of length 0, returns the transform that changes nothing.
     static DxfTransform from_entity(const DxfPoint& extrusion);
 
     DxfTransform operator*(const DxfTransform& first) const;

@@ -16,7 +16,7 @@ namespace octopair::io {
 
 namespace {
 
-/// Only checks that the text is well-formed.
+/// Checks that the text is well-formed XML, and nothing else.
 MeshContent check_xml(const std::string& path, std::string_view text) {
     (void)XmlTree(path, text);
     return {};
@@ -28,7 +28,7 @@ bool has_geometry(std::string_view type) {
     return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-/// Refuses scenes of Irrlicht (.irr): Assimp 5.2 finds no object in them, and says nothing.
+/// Refuses scenes of Irrlicht (.irr): Assimp 5.2 finds no object in them, and reports no error.
 /// Throws: Error{bad_input} with the line of the first object.
 MeshContent check_irrlicht(const std::string& path, std::string_view bytes) {
     const XmlTree tree(path, bytes);

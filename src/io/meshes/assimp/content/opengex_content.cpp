@@ -1,4 +1,4 @@
-// The check of OpenGEX files.
+// Checks OpenGEX files for content that Assimp reads wrongly or leaves out (check_opengex()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace octopair::io {
 
 namespace {
 
-/// A structure that is open, and what it has so far.
+/// A structure that has begun and not ended, and the part of its content that was read so far.
 struct OpenStructure {
     std::string_view type;
     std::size_t line = 0;
@@ -147,7 +147,7 @@ private:
 
     TextTokens tokens_;
     std::vector<OpenStructure> open_;
-    bool in_positions_ = false;  // in the array of the positions
+    bool in_positions_ = false;  // true while reading the array of the positions
     LeftOut left_out_;
 };
 

@@ -1,4 +1,4 @@
-// The check of X3D files.
+// Checks X3D files, and writes them in a form that Assimp reads rightly (correct_x3d()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// Groups, and what they are written as.
+/// Names of groups, each with the name under which the group is written.
 constexpr auto groups = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"Anchor", "Group"},
     {"CADAssembly", "Group"},
@@ -47,7 +47,7 @@ std::string_view group_name(std::string_view name) {
 
 bool is_metadata(const XmlElement& node) { return node.name().starts_with("Metadata") || node.name() == "IS"; }
 
-/// Writes the scene of one file, and those of the files that it names.
+/// Writes the scene of one file, and the scenes of the files that its Inline nodes name.
 class X3dWriter {
 public:
     X3dWriter(const XmlTree& tree, XmlWriter& out, LeftOut& left_out) : tree_(tree), out_(out), left_out_(left_out) {
@@ -68,7 +68,7 @@ public:
     }
 
 private:
-    /// Reads the unit of angles, which Assimp takes for radians.
+    /// Reads the unit of angles. Assimp ignores this unit and reads angles as radians.
     void check_units(const XmlElement& head) {
         for (const XmlElement& unit : head.children("unit")) {
             const std::vector<double> factor = x3d_numbers(unit, "conversionFactor");
@@ -80,7 +80,7 @@ private:
         }
     }
 
-    /// Returns the last element before `node` that has the name which `node` uses.
+    /// Returns the node that `node` refers to by USE: the last element before `node` that defines this name (DEF).
     XmlElement used_by(const XmlElement& node) const {
         const auto name = node.attribute("USE");
         if (!name || name->empty()) return node;
@@ -137,7 +137,7 @@ private:
         if (const auto name = node.attribute("DEF")) out_.attribute("DEF", *name);
     }
 
-    /// Assimp leaves an empty group twice. So a group without children gets a node without geometry.
+    /// Ends a group. Assimp leaves an empty group twice, so a group without children gets a child without geometry.
     void end_group(std::size_t size_before) {
         if (out_.size() == size_before) {
             out_.open("Viewpoint");
@@ -188,7 +188,7 @@ private:
         out_.close();
     }
 
-    /// Writes the scene of another file, as Assimp does: a group with a group.
+    /// Writes the scene of another file as a group within a group, as Assimp does.
     void write_inline(const XmlElement& node) {
         const auto load = node.attribute("load");
         begin_group(node, "Group");
@@ -229,7 +229,7 @@ private:
     double radians_ = 1;  // radians in the file's unit of angles
     std::map<std::string, std::vector<std::size_t>> definitions_;
     std::vector<std::size_t> open_;  // nodes that are being written
-    std::size_t files_ = 0;          // how deep Inline nodes may be nested in this file
+    std::size_t files_ = 0;          // number of levels of Inline nodes that this file may still have
 };
 
 }  // namespace

@@ -72,7 +72,7 @@ void check_corners(const XmlElement& node, std::string_view name, const CornerLi
     }
 }
 
-/// Calls visit(first, count) for each list of `counts` points in a row. Without counts, all points are one list.
+/// Calls visit(first, count) for each run of points. `counts` has the lengths of the runs; without counts, all points are one run.
 template <typename Visit>
 void for_each_run(const XmlElement& node, std::string_view counts, std::size_t points, const Visit& visit) {
     std::size_t first = 0;
@@ -94,7 +94,7 @@ void append_triangles(const std::vector<double>& corners, bool fan, CornerList& 
     }
 }
 
-/// Returns the runs of a list that -1 separates.
+/// Returns the runs of corners in a list, in which -1 separates runs.
 std::vector<std::vector<double>> runs_of(const CornerList& corners) {
     std::vector<std::vector<double>> runs(1);
     for (const double index : corners) {
@@ -113,7 +113,7 @@ std::vector<double> ascending(std::size_t first, std::size_t count) {
     return numbers;
 }
 
-/// Appends faces of `size` corners each.
+/// Divides the corners into faces of `size` corners, and appends these faces.
 void append_faces(const std::vector<double>& corners, std::size_t size, CornerList& faces) {
     for (std::size_t k = 0; k + size <= corners.size(); k += size) {
         faces.insert(faces.end(), corners.begin() + std::ptrdiff_t(k), corners.begin() + std::ptrdiff_t(k + size));
@@ -194,7 +194,7 @@ bool flag_or(const XmlElement& node, std::string_view name, bool otherwise) {
     return text ? text->starts_with('t') || text->starts_with('T') || text->starts_with('1') : otherwise;
 }
 
-/// Sides of a round shape. A multiple of 4, so that its bounds are those of the shape.
+/// Number of sides of a round shape. A multiple of 4, so that the bounds of the written shape are those of the round shape.
 constexpr std::size_t round_sides = 32;
 
 /// Appends the points of a circle at the height y.
@@ -205,14 +205,14 @@ void append_circle(double radius, double y, std::vector<double>& points) {
     }
 }
 
-/// Appends a face with the points of a circle, of which `first` is the first one.
+/// Appends a face with the points of a circle. `first`: index of the first of these points.
 void append_disk(std::size_t first, CornerList& faces) {
     const std::vector<double> corners = ascending(first, round_sides);
     faces.insert(faces.end(), corners.begin(), corners.end());
     faces.push_back(-1);
 }
 
-/// Writes a cone as a pyramid. Its tip is above.
+/// Writes a cone as a pyramid. Its tip is at the top, along +y.
 void write_cone(const XmlElement& node, XmlWriter& out) {
     const double height = number_or(node, "height", 2), radius = number_or(node, "bottomRadius", 1);
     std::vector<double> points = {0, height / 2, 0};
@@ -261,7 +261,7 @@ void write_grid(const XmlElement& node, XmlWriter& out) {
     if (!faces.empty()) write_faces(faces, points, out);
 }
 
-/// Writes an Extrusion that Assimp reads rightly.
+/// Writes an Extrusion. Refuses an Extrusion that Assimp would read wrongly.
 void write_extrusion(const XmlElement& node, XmlWriter& out) {
     const std::vector<double> spine = x3d_numbers(node, "spine"), turns = x3d_numbers(node, "orientation");
     for (std::size_t k = 3; k < turns.size(); k += 4) {

@@ -1,4 +1,4 @@
-// The check of XGL files.
+// Checks XGL files, and writes them in a form that Assimp reads rightly (correct_xgl()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
 #include <zlib.h>
@@ -157,7 +157,7 @@ private:
         out_.close();
     }
 
-    /// Writes what the world or an object has. `pose`: where it is.
+    /// Writes the content of the world or of an object. `pose`: pose of this content in the world.
     void write_content(const XmlElement& object, const XglPose& pose) {
         if (std::find(open_.begin(), open_.end(), object.index()) != open_.end())
             object.refuse("the object refers to itself");
@@ -174,7 +174,7 @@ private:
         open_.pop_back();
     }
 
-    /// An object with an ID in the world is read where it stands, as Assimp does, unless a reference places it.
+    /// Returns whether references place an object. If none does, the object is read where it stands in the world, as Assimp does.
     bool is_definition(const XmlElement& object) const {
         const auto id = id_of(object);
         return id && placed_.contains(*id);

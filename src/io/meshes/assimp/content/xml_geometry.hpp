@@ -1,5 +1,5 @@
-// Writes the geometry of COLLADA and X3D files in a form that Assimp reads rightly: with nothing but positions, and with indices that were
-// checked (mesh_content.hpp).
+// Writes the geometry of COLLADA and X3D files in a form that Assimp reads rightly: only positions, and only indices that were checked
+// (mesh_content.hpp).
 #pragma once
 
 #include <functional>
