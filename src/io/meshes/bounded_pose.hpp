@@ -2,7 +2,7 @@
 //
 // - Every operation adds the rounding error of its steps to the bound. Two-sum gives the exact error of a sum, fma that of
 //   a product.
-// - A bound of zero means an exact result. So meshes without a transform, or moved by whole numbers, keep exact boxes.
+// - A bound of zero means an exact result. So meshes without a transform, or with a translation by whole numbers, keep exact boxes.
 // - Other boxes grow by no more than the rounding error.
 // - The values are those of plain float64 arithmetic, so they agree with the world positions of octopair/shapes.hpp.
 //

@@ -1,4 +1,4 @@
-// The elements of an IFC file, and the facts about them that its text has.
+// Reads the elements of an IFC file, and the facts about elements that only the text of the file has (read_ifc_text()).
 #include "io/meshes/assimp/ifc_text.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void append_utf8(std::string& text, std::uint32_t letter) {
     text += char(0x80 | (letter & 0x3F));
 }
 
-/// Returns the number of `digits` hexadecimal digits at the beginning of a text.
+/// Returns the value of the `digits` hexadecimal digits at the beginning of a text; nothing if the text has fewer such digits.
 std::optional<std::uint32_t> hexadecimal(std::string_view text, std::size_t digits) {
     if (text.size() < digits) return std::nullopt;
     std::uint32_t value = 0;
@@ -94,7 +94,7 @@ std::size_t decode_code(std::string_view text, std::string& decoded) {
 constexpr std::string_view space = " \t\r\n", digits = "0123456789",
                            keyword = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
 
-/// An instance of a STEP file: #NUMBER = KEYWORD(attributes). Borrows from the text.
+/// An instance of a STEP file: #NUMBER = KEYWORD(attributes). Borrows its texts.
 struct StepInstance {
     std::string_view number, type;
     std::string_view attributes;  ///< text after the opening parenthesis, to the closing one
@@ -114,7 +114,7 @@ public:
 
     bool at_end() const { return rest_.empty(); }
 
-    /// Skips white space and comments. Returns whether the next character is `c`, and skips that one, too.
+    /// Skips white space and comments. If the next character is `c`, skips this character, too, and returns true.
     bool take(char c) {
         skip(space);
         while (rest_.starts_with("/*")) {
@@ -137,18 +137,18 @@ public:
         }
         return std::nullopt;
     }
-    /// Reads characters of `set`.
+    /// Reads and returns the next characters, as long as they are in `set`.
     std::string_view take_all(std::string_view set) {
         const std::string_view before = rest_;
         skip(set);
         return before.substr(0, before.size() - rest_.size());
     }
-    /// Skips all characters of `set`.
+    /// Skips the next characters, as long as they are in `set`.
     void skip(std::string_view set) {
         const std::size_t end = rest_.find_first_not_of(set);
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end);
     }
-    /// Goes to the next character of `set` that is in neither a text nor a comment. Returns false at the end.
+    /// Goes to the next character of `set`. Ignores characters in texts and comments. Returns false at the end.
     bool find(std::string_view set) {
         const std::string wanted = std::string(set) + "'/";
         while (!rest_.empty()) {
@@ -166,7 +166,7 @@ public:
         rest_ = {};
         return false;
     }
-    /// Reads to the end of the next instance, or of a line of the header. Returns nothing for the latter.
+    /// Reads to the end of the next instance or line of the header. Returns the instance; nothing for a line of the header.
     std::optional<StepInstance> next() {
         StepInstance instance;
         const bool numbered = take('#');
@@ -187,7 +187,7 @@ private:
     std::string_view rest_;
 };
 
-/// Returns the numbers of the instances that attributes refer to, in order.
+/// Returns the numbers of the instances that some attributes refer to, in order.
 std::vector<std::string_view> references_of(std::string_view attributes) {
     std::vector<std::string_view> references;
     for (StepReader reader(attributes); reader.find("#");) {
@@ -300,7 +300,7 @@ private:
         if (name && !name->empty()) text_.names.emplace(*first, decode_step_text(*name));
     }
 
-    /// An association has elements, and the material as its last reference.
+    /// Notes the materials of the elements of each association. An association refers to its elements first, and to the material last.
     void add_materials() {
         for (const auto& references : associations_) {
             if (references.empty()) continue;
@@ -333,7 +333,7 @@ private:
         }
     }
 
-    /// Returns the names of the materials that an instance leads to. Visits a limited number of instances: a file could have many lists that
+    /// Returns the names of the materials that an instance leads to. Visits a limited number of instances, because in some files many lists
     /// lead to one long list. The stack is explicit, because the file controls the depth.
     std::set<std::string> materials_below(std::string_view number) const {
         constexpr std::size_t most = 100;

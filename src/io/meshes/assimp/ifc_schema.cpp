@@ -45,7 +45,7 @@ constexpr std::array<std::string_view, 28> new_types = {"IfcTriangulatedFaceSet"
                                                         "IfcPolynomialCurve",
                                                         "IfcClothoid"};
 
-/// Returns the number of instances of a type: "=TYPE(", in any case of letters. `upper`: the text's form of the name.
+/// Returns the number of instances of a type: of "=TYPE(", with letters of any case. `upper`: name of the type in capitals.
 std::uint64_t count_type(std::string_view step, const std::string& upper) {
     std::uint64_t count = 0;
     for (std::size_t at = step.find(upper); at != std::string_view::npos; at = step.find(upper, at + upper.size())) {

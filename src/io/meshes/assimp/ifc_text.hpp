@@ -1,8 +1,8 @@
 // The text of an IFC file (STEP, ISO 10303-21).
 //
-// - Elements: their descriptions in the names of Assimp's nodes, and what the text adds. Assimp loses encoded letters of
-//   names: "B\X2\00FC\X0\ro", for Büro, becomes "Bro". It does not read materials, and reads files that are cut.
-// - Schema: Assimp knows IFC2x3 alone, and crashes on geometry of other types.
+// - Elements: Assimp describes an element in the name of its node. The text adds what Assimp loses: encoded letters of names
+//   ("B\X2\00FC\X0\ro", for Büro, becomes "Bro"), and materials. The text also shows whether the file is cut; Assimp reads such files.
+// - Schema: Assimp reads only IFC2x3, and crashes on geometric types of other schemas.
 #pragma once
 
 #include <cstdint>
@@ -31,30 +31,29 @@ using IfcTexts = std::unordered_map<std::string, std::string>;
 struct IfcText {
     IfcTexts names;      ///< names of the elements that have one
     IfcTexts materials;  ///< names of the materials that are associated with an element, joined by ", "
-    /// Types of the elements that have a body: a representation other than an axis, a footprint and the like. Without openings, spaces and
-    /// grids, which Assimp leaves out.
+    /// Types of the elements that have a body: a representation that is no axis, footprint or the like. Openings, spaces and grids are left
+    /// out, because Assimp leaves them out.
     IfcTexts bodies;
     std::map<std::string, std::uint64_t> left_out;  ///< number of elements with a shape that Assimp leaves out, by type
     double largest_coordinate = 0;  ///< largest absolute coordinate of all points, in the unit of the file
     bool complete = false;          ///< false: the text ends before the end of a STEP file
 };
 
-/// Reads a STEP text. An element is an instance whose first attribute is a text of 22 characters; its name is the third attribute. Text
+/// Reads a STEP text. An element is an instance whose first attribute is a text of 22 characters; its third attribute is its name. A text
 /// that is not STEP has no elements. Complexity: linear.
 IfcText read_ifc_text(std::string_view step);
 
-/// Returns a text of a STEP file in UTF-8. Decodes '', \\, \S\, \X\, \X2\ and \X4\. Keeps what is not a
-/// valid code.
+/// Decodes a text of a STEP file to UTF-8: the codes '', \\, \S\, \X\, \X2\ and \X4\. Invalid codes stay as they are.
 std::string decode_step_text(std::string_view text);
 
-/// Returns the name in FILE_SCHEMA, for example "IFC4"; empty if there is none. `step`: the text of the file, or its beginning.
+/// Returns the name of the schema in FILE_SCHEMA, for example "IFC4"; empty if there is none. `step`: text of the file, or its beginning.
 std::string ifc_schema(std::string_view step);
 
-/// Returns the geometric types in the text that IFC2x3 does not have, with their numbers: "12 IfcTriangulatedFaceSet, 3
+/// Returns the geometric types in the text that IFC2x3 lacks, each with its number of instances: "12 IfcTriangulatedFaceSet, 3
 /// IfcIndexedPolyCurve". Complexity: linear in the text, for each of about 30 types.
 std::string types_beyond_ifc2x3(std::string_view step);
 
-/// Returns why Assimp fails on an IFC file, as far as its text shows, and what to do. Empty for other files, and for compressed ones.
+/// Returns a likely reason why Assimp fails on an IFC file, and what to do. Empty for other files, and for compressed files.
 /// Throws: Error{bad_input, io_failed} if the file cannot be read.
 std::string ifc_remedy(const std::string& path);
 

@@ -1,4 +1,4 @@
-// What users should know about a file that Assimp imported: warnings, what was not read, axes and unit.
+// Facts about a file that Assimp imported and that users should know: warnings, content that was not read, axes and unit.
 #include "io/meshes/assimp/scene_parts.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace octopair::io {
 
 namespace {
 
-/// Returns the warning that octopair does not check what Assimp reads of a format, or an empty text.
+/// Returns a warning if octopair does not check how Assimp reads the format of the file, or an empty text.
 std::string unchecked_format(const MeshFile& file) {
     const FileFormat* const format = file.known().format;
     if (format != nullptr && format->reader == FormatReader::checked_assimp) return {};
@@ -48,7 +48,7 @@ std::string lost_elements(const MeshFile& file) {
     const IfcText& text = file.ifc_text();
     if (text.bodies.empty()) return {};
     const std::unordered_set<std::string> read = elements_read(file);
-    if (read.contains("")) return {};  // which elements they are is not known
+    if (read.contains("")) return {};  // which elements were read is unknown
     std::vector<std::string> lost;
     for (const auto& [id, type] : text.bodies) {
         if (!read.contains(id)) lost.push_back(id);
@@ -64,7 +64,7 @@ std::string lost_elements(const MeshFile& file) {
         name == text.names.end() ? "" : fmt::format(" ('{}')", name->second));
 }
 
-/// Returns what the importer of DirectX left out: corners beyond the vertices. The text of a file is checked before; a binary file is not.
+/// Returns what the importer of DirectX left out: corners beyond the vertices. Only binary files have them: a text is checked before.
 std::vector<std::string> lost_corners(const MeshFile& file) {
     if (file.known().ending != ".x") return {};
     std::uint64_t faces = 0;
@@ -75,7 +75,7 @@ std::vector<std::string> lost_corners(const MeshFile& file) {
     return {fmt::format("faces with fewer than three corners within the vertices ({})", faces)};
 }
 
-/// Returns what the content of the file, and its importer, show as left out.
+/// Returns the content that was left out, as far as the file and its importer show it.
 std::vector<std::string> lost_parts(const MeshFile& file) {
     std::vector<std::string> lost = file.left_out();
     for (std::string& part : lost_corners(file)) lost.push_back(std::move(part));
@@ -108,7 +108,7 @@ SceneSpace space_of(const MeshFile& file) {
     int up = -1, sign = 1;
     if (facts->Get("UpAxis", up) && (!facts->Get("UpAxisSign", sign) || sign > 0))
         result.up = up == 1 ? UpAxis::y : up == 2 ? UpAxis::z : UpAxis::unknown;
-    float scale = 0;  // centimetres in a unit
+    float scale = 0;  // centimetres per unit of the file
     constexpr std::array<std::pair<float, const char*>, 5> units = {
         {{0.1f, "mm"}, {1, "cm"}, {100, "m"}, {2.54f, "in"}, {30.48f, "ft"}}};
     if (!facts->Get("UnitScaleFactor", scale)) return result;

@@ -36,7 +36,7 @@ void rethrow_bad_alloc(const Assimp::Importer& importer) {
     }
 }
 
-/// Returns the largest coordinate of a node's translation, without its sign.
+/// Returns the largest absolute coordinate of a node's translation.
 double translation_of(const aiNode& node) {
     const aiMatrix4x4& m = node.mTransformation;
     return std::max({std::abs(double(m.a4)), std::abs(double(m.b4)), std::abs(double(m.c4))});
@@ -48,8 +48,8 @@ Buffer<char> read_bytes(const InputFile& file) {
     return bytes;
 }
 
-/// Returns what the text of an IFC file says, if it is not compressed.
-/// Throws: Error{bad_input} if the file is cut. Assimp would read the part that is there.
+/// Returns the facts that the text of an IFC file states. Empty for compressed files and other formats.
+/// Throws: Error{bad_input} if the file is cut. Assimp would read the part before the cut without an error.
 IfcText read_text_of_ifc(const std::string& path, const KnownFormat& known) {
     if (known.ending != ".ifc") return {};
     const Buffer<char> text = read_bytes(InputFile(path));
@@ -58,7 +58,7 @@ IfcText read_text_of_ifc(const std::string& path, const KnownFormat& known) {
     return read;
 }
 
-/// Files of the system, but for one, whose content is given.
+/// The system's files for Assimp. Only the file at `path` has another content: `text`.
 class FilesWithText : public Assimp::DefaultIOSystem {
 public:
     /// Requires: `text` outlives this object.
@@ -143,8 +143,8 @@ MeshFile::MeshFile(const std::string& path, bool triangles)
 
 const aiScene& MeshFile::import(const std::string& path) {
     const InputFile readable(path);  // throws an error with the reason of the system if the file cannot be opened
-    // Assimp chooses its reader by the ending. A file with another ending, or none, is read from memory, with the right one.
-    importer_.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // they are in no file
+    // Assimp chooses its reader by the ending. A file with a wrong or missing ending is read from memory, under the right ending.
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no file has such meshes
     const bool by_name = !known_.by_content && content_.ending.empty();
     const aiScene* const scene = by_name ? import_by_name(path) : import_by_content(readable);
     readable.check_unchanged();

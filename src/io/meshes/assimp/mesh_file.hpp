@@ -50,9 +50,9 @@ public:
     const aiScene& scene() const { return *scene_; }
     const std::string& path() const { return path_; }
     const KnownFormat& known() const { return known_; }
-    /// Returns what Assimp left out, as far as the text of the file shows, for example "entities of type 3DSOLID (2)".
+    /// Returns the content that Assimp left out, as far as the text of the file shows it, for example "entities of type 3DSOLID (2)".
     const std::vector<std::string>& left_out() const { return content_.left_out; }
-    /// Returns what the text of an IFC file says; nothing for other files, and for compressed ones.
+    /// Returns the facts that the text of an IFC file states; empty for other files, and for compressed files.
     const IfcText& ifc_text() const { return ifc_text_; }
     const aiMesh& mesh(unsigned number) const { return *scene_->mMeshes[number]; }
     /// Returns the used vertices of a mesh, each once, in the order of first use. Requires: an instance has the mesh.
@@ -70,7 +70,7 @@ public:
             if (face.mNumIndices == 3) visit(Corners{face.mIndices[0], face.mIndices[1], face.mIndices[2]});
         }
     }
-    /// Returns the faces that cross themselves, with the names of the first instances that have them.
+    /// Returns the faces that cross themselves, with the names of the first instances that have such faces.
     const CrossingFaces& crossing_faces() const { return crossing_faces_; }
 
     static Point3d vertex(const aiMesh& mesh, unsigned index) {
@@ -80,7 +80,7 @@ public:
     /// Returns the position of a vertex in the world.
     /// Throws: Error{bad_input} that names the node and the vertex, if the position in the file or in the world is not finite.
     BoundedPoint posed_vertex(const MeshInstance& instance, const aiMesh& mesh, unsigned index) const;
-    /// Throws: Error{bad_input}: `value` is a coordinate of the vertex, and not finite.
+    /// Throws: Error{bad_input} because `value`, a coordinate of the vertex, is not finite.
     [[noreturn]] void refuse_vertex(const MeshInstance& instance, unsigned index, double value) const;
 
 private:
@@ -88,7 +88,7 @@ private:
 
     const aiScene& import(const std::string& path);
     const aiScene* import_by_name(const std::string& path);
-    /// Reads a file whose name has another ending than its format, or none.
+    /// Reads a file whose name does not have the ending of its format.
     const aiScene* import_by_content(const InputFile& file);
     void cut_faces();
     bool has_vertices(const MeshInstance& instance);
@@ -110,8 +110,8 @@ private:
 /// Returns the pose of a node within its parent, in Assimp's axes.
 BoundedPose pose_of(const aiNode& node);
 
-/// Returns the pose of the root node of a file. Assimp turns and mirrors some formats to its own axes (formats/format_table.hpp). The pose
-/// undoes that, so coordinates are those of the file. COLLADA files keep Assimp's axes, because their unit and axes are those of glTF then.
+/// Returns the pose of the root node. Assimp turns or mirrors some formats to its own axes (formats/format_table.hpp). The pose undoes this
+/// change, so coordinates are those of the file. COLLADA files keep Assimp's axes and unit, which then are those of glTF.
 BoundedPose root_pose(const aiNode& root, const KnownFormat& known);
 
 }  // namespace octopair::io

@@ -1,17 +1,17 @@
-// Reads mesh files through Assimp; plain/ has readers of simple formats, and gltf/ that of glTF. An object is a node with meshes, or
+// Reads mesh files through Assimp. The folders plain/ and gltf/ have readers that need no Assimp. An object is a node with meshes, or
 // a triangle.
 //
-//   node      The name is the node path from the root, joined by "/". A node without a name gives "#" and its position
-//             among its parent's children. The box is float64 and rounded outward. It encloses the vertices that faces use
+//   node      The name is the node path from the root, joined by "/". In the path, "#" and the position among its parent's children
+//             stand for a node without a name. The box is float64 and rounded outward. It encloses the vertices that faces use
 //             (all vertices, if a mesh has no faces), posed by the transforms along the path.
-//   triangle  The order is node by node, mesh by mesh, face by face. Faces with more corners are cut into triangles.
-//             Points and lines are left out. The box is float32: posed vertices rounded once, then their min and max.
+//   triangle  The order is node by node, mesh by mesh, face by face. Faces with more than three corners are cut into triangles.
+//             Points and lines are left out. The box is float32: posed vertices are rounded once, and then the box encloses them.
 //             Triangles have no names.
 //
 // With SceneContent::shapes, nodes have shapes besides boxes. Triangles then have float64 corners and the names of their
 // nodes, and no boxes.
 //
-// A format needs an entry in io/formats/format_table.cpp. One that Assimp does not read needs a reader that io/scene_reader.cpp calls, too.
+// A new format needs an entry in io/formats/format_table.cpp. If Assimp cannot read it, io/scene_reader.cpp must call a reader for it.
 //
 // Vertices keep the order of Assimp and are not merged. Bones and animations are ignored.
 #pragma once

@@ -27,7 +27,7 @@ std::array<double, 4> negated(const std::array<double, 4>& row) {
     return result;
 }
 
-/// Undoes a change of axes. Only swaps and negates, so nothing is rounded.
+/// Reverts a change of axes. The function only swaps and negates numbers, so it rounds nothing.
 Rows undo(AxisChange change, const Rows& rows) {
     if (change == AxisChange::turned) return {rows[0], negated(rows[2]), rows[1]};
     if (change == AxisChange::mirrored) return {rows[0], rows[1], negated(rows[2])};
@@ -42,8 +42,8 @@ double shortest_decimal(float value) {
     return decimal;
 }
 
-/// Removes the rounding of Assimp's quarter turn of IFC models. It is in float32: it leaves 4e-8 where 0 belongs, and 0.001 is off by
-/// 5e-11.
+/// Removes the rounding errors of the quarter turn that Assimp applies to IFC models in float32. They leave 4e-8 where 0 belongs, and
+/// change 0.001 by 5e-11.
 void remove_rounding(Rows& rows) {
     double largest = 0;
     for (const auto& row : rows) largest = std::max({largest, std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});

@@ -22,7 +22,7 @@ std::string& text_of(DetailTexts& texts, Detail detail) { return texts[std::size
 
 std::string_view name_of(const aiNode& node) { return {node.mName.C_Str(), node.mName.length}; }
 
-/// Returns whether a name was invented by Assimp, because the file gives none.
+/// Returns whether Assimp invented the name of a material, because the file gives none.
 bool is_invented(std::string_view material) {
     return material.empty() || material == AI_DEFAULT_MATERIAL_NAME || material.starts_with("<IFCDefault");
 }
@@ -87,7 +87,7 @@ void add_node_details(const aiNode& node, DetailTexts& texts) {
 
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-/// A mesh of a file, by its number.
+/// A mesh of a file, and its number in the file.
 struct NumberedMesh {
     const MeshFile& file;
     unsigned number;

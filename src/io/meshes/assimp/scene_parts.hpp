@@ -1,4 +1,4 @@
-// Parts of a scene that are made of a file which Assimp imported (mesh_file.hpp): details, shapes, triangles, warnings, axes.
+// Makes the parts of a scene from a file that Assimp imported (mesh_file.hpp): details, shapes, triangles, warnings and axes.
 //
 // Details of an instance:
 //
@@ -43,13 +43,13 @@ LoadedTriangles triangles_of(const MeshFile& file);
 /// Throws: Error{bad_input} for a vertex that is not finite; Error{resource_limit} as shapes_of() does.
 shape::Mesh whole_mesh_of(const MeshFile& file);
 
-/// Returns warnings about the file, each a line "FILE: ...": that octopair does not check the format, and what was not read.
+/// Returns warnings about the file, each a line "FILE: ...": whether octopair checks the format, and the content that was not read.
 std::vector<std::string> import_warnings(const MeshFile& file);
 
-/// Returns what was not read, for LoadedScene::not_read.
+/// Returns the content that was not read, for LoadedScene::not_read.
 std::vector<std::string> left_out_of(const MeshFile& file);
 
-/// Returns the axes and the unit of a file: those of its format, or for FBX those that the file has.
+/// Returns the axes and the unit of a file: those of its format. An FBX file states its own.
 SceneSpace space_of(const MeshFile& file);
 
 }  // namespace octopair::io

@@ -11,7 +11,7 @@ namespace octopair::io {
 
 namespace {
 
-/// Cuts off corners that bulge and have no other corner in their triangle; if there are none, the next corner.
+/// Cuts off ears: corners that bulge outward, with no other corner in their triangle. Without an ear, the cutter cuts off the next corner.
 class EarCutter {
 public:
     explicit EarCutter(const PlaneOutline& outline)

@@ -1,11 +1,11 @@
-// FaceCutter: cuts faces with any number of corners into triangles. CrossingFaces: counts those that it cannot cut rightly.
+// FaceCutter: cuts faces with any number of corners into triangles. CrossingFaces: counts the faces that have no correct triangles.
 // Start here to change how faces are cut into triangles.
 //
-// - Everything is decided exactly, in the plane of two coordinate axes across which the area vector of the outline is largest.
-// - A convex face is cut from its first corner. Other faces are cut by a sweep (outline_sweep.hpp): the triangles are the inside of the
-//   outline, also if it touches itself, and have its sense.
+// - All decisions are exact. They are made in a plane of two coordinate axes: that in which the area of the outline is largest.
+// - A convex face is cut from its first corner. Other faces are cut by a sweep (outline_sweep.hpp). The triangles fill the inside of the
+//   outline, also if it touches itself, and turn the same way as the outline.
 // - A face that crosses itself or folds in the plane has no such triangles. It is cut into ears, within the convex hull of its corners.
-// - The edges of the triangles are those of the outline, and others that cancel in pairs. So a closed mesh stays closed.
+// - Besides the edges of the outline, all edges of triangles cancel in pairs. So a closed mesh stays closed.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// MonotonePieces: triangles of a sweep.
+// MonotonePieces: keeps the open pieces of a sweep, and cuts triangles off them.
 #include "io/meshes/faces/outline_sweep.hpp"
 
 namespace octopair::io {
@@ -14,7 +14,7 @@ std::uint32_t MonotonePieces::add_piece(Piece piece) {
     return number;
 }
 
-/// Cuts off a triangle of three nodes from left to right, the second of which is on the given side of the others.
+/// Cuts off the triangle of three nodes, from left to right. `side`: the side of the outer nodes on which the second node is.
 void MonotonePieces::cut(Side side, std::uint32_t first, std::uint32_t second, std::uint32_t third) {
     if (side == Side::lower) {
         triangles_.push_back({first, second, third});
@@ -23,7 +23,7 @@ void MonotonePieces::cut(Side side, std::uint32_t first, std::uint32_t second, s
     }
 }
 
-/// Cuts off the triangles of the node and each edge of the chain.
+/// Cuts off the triangles between the node and each edge of the piece's chain.
 void MonotonePieces::cut_fan(const Piece& piece, std::uint32_t node) {
     for (std::size_t i = 1; i < piece.chain.size(); ++i) cut(piece.side, piece.chain[i - 1], piece.chain[i], node);
 }
@@ -61,7 +61,7 @@ void MonotonePieces::close(const Gap& gap, std::uint32_t node) {
 MonotonePieces::Gap MonotonePieces::extend(const Gap& gap, std::uint32_t node, Side side) {
     std::uint32_t left = gap.lower;
     if (gap.upper != none) {
-        // The piece next to the edge that ended is closed: its other side is an edge from its last node to this one.
+        // The piece next to the edge that ended gets a last edge, from its last node to this node, and is closed.
         close_piece(side == Side::lower ? gap.lower : gap.upper, node);
         if (side == Side::lower) left = gap.upper;
     }
@@ -75,7 +75,7 @@ std::pair<MonotonePieces::Gap, MonotonePieces::Gap> MonotonePieces::split(const 
         extend_piece(gap.upper, node, Side::lower);
         return {{gap.lower, none}, {gap.upper, none}};
     }
-    // An edge from the last node of the chain to this one divides the piece.
+    // An edge from the last node of the chain to this node divides the piece.
     const auto [last, side] = std::pair(pieces_[gap.lower].chain.back(), pieces_[gap.lower].side);
     extend_piece(gap.lower, node, side);
     const Side other = side == Side::lower ? Side::upper : Side::lower;

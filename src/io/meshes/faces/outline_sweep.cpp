@@ -18,7 +18,7 @@ using Gap = MonotonePieces::Gap;
 using Side = MonotonePieces::Side;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
-/// A bundle on the line: its part from its last node, which is on the line or left of it, to its farthest end.
+/// The part of a bundle that the sweep line crosses: from the bundle's last node up to the line, to its farthest end.
 struct Stretch {
     std::uint32_t from, reach;
 };
@@ -28,10 +28,10 @@ struct Active {
     std::uint32_t bundle;
     int weight;
     int winding;  ///< winding number of the gap above
-    Gap gap;      ///< above
+    Gap gap;      ///< gap above the bundle
 };
 
-/// The order on the line, from below. A node on a bundle is equal to it.
+/// Order of bundles and nodes on the sweep line, from below. A node on a bundle is equal to the bundle.
 struct FromBelow {
     using is_transparent = void;
     const PlaneOutline* plane;
@@ -44,20 +44,20 @@ struct FromBelow {
     }
 };
 
-/// All edges along each other that cover a stretch of a line without a gap.
+/// Edges along one straight line that together cover a stretch of this line without a gap.
 struct Bundle {
     std::uint32_t first;   ///< leftmost node
-    int weight = 0;        ///< sum of the weights of the edges at the line
-    bool divided = false;  ///< whether a node is on an edge, between its ends
+    int weight = 0;        ///< sum of the weights of the edges that the sweep line crosses
+    bool divided = false;  ///< true if a node lies on an edge, between its ends
 };
 
-/// A part of a bundle, between neighbouring nodes; or an edge of it.
+/// A part of a bundle between neighbouring nodes, or a whole edge of the bundle.
 struct BundlePart {
     std::uint32_t bundle, low, high;
     int weight;
 };
 
-/// A way to the right from a node: an edge that begins there, or a bundle that goes on.
+/// An edge that begins at a node, or a bundle that continues to the right of a node.
 struct Outgoing {
     static constexpr std::uint32_t no_bundle = ~std::uint32_t(0);
     std::uint32_t reach;
@@ -109,7 +109,7 @@ private:
         return true;
     }
 
-    /// Closes the gaps between bundles that end at the node.
+    /// Closes the gaps between the bundles that end at the node.
     void end_gaps(std::uint32_t node, Line::iterator begin, Line::iterator end) {
         if (begin == end) return;
         for (const auto last = std::prev(end); begin != last; ++begin) {
@@ -117,7 +117,7 @@ private:
         }
     }
 
-    /// Ends the parts of bundles at a node, and lists those that go on. Returns false if several do: they cross there.
+    /// Ends the parts of bundles at a node, and lists the bundles that continue. If several continue, they cross: returns false.
     bool end_bundles(std::uint32_t node, Line::iterator begin, Line::iterator end) {
         outgoing_.clear();
         for (const std::uint32_t i : nodes_.ending_at(node)) {
@@ -136,7 +136,7 @@ private:
         return outgoing_.size() <= 1;
     }
 
-    /// Puts the bundles that begin or go on at the node on the line, below `above`. `winding`: winding number below all of them.
+    /// Puts the bundles that begin or continue at the node on the line, below `above`. `winding`: winding number below all these bundles.
     /// Returns false if the outline crosses itself or folds.
     bool begin_bundles(std::uint32_t node, Line::iterator above, int winding) {
         for (const std::uint32_t i : nodes_.starting_at(node)) {
@@ -158,7 +158,7 @@ private:
         return !crosses_lower_neighbour(first) && (first == above || !crosses_lower_neighbour(above));
     }
 
-    /// Puts a bundle on the line, of ways from the node that go along each other.
+    /// Puts one bundle on the line. `ways`: outgoing edges and the continuing bundle, all in one direction from the node.
     Line::iterator begin_bundle(std::uint32_t node, Line::iterator above, std::span<const Outgoing> ways) {
         std::uint32_t number = Outgoing::no_bundle, reach = node;
         for (const Outgoing& way : ways) {
@@ -191,11 +191,11 @@ private:
                plane_.side(b.from, b.reach, a.from) * plane_.side(b.from, b.reach, a.reach) < 0;
     }
 
-    /// The gaps at a node that end or go on, and the neighbours that they belong to.
+    /// The gaps that end or continue at a node, and the bundles below them.
     struct GapsAtNode {
         bool is_within_gap;
-        Gap low, high;         // below and above the node, left of it; one gap if the node is within it
-        Active *below, *last;  // the bundle below the node, and the highest one that begins at it; or null
+        Gap low, high;         // below and above the node, left of it; if the node is within a gap, `low` is this gap
+        Active *below, *last;  // the bundle below the node, and the highest bundle that begins at it; or null
     };
 
     /// Adds a node to the gaps below and above it.
@@ -215,7 +215,7 @@ private:
         if (at.below != nullptr) at.below->gap = low;
     }
 
-    /// Adds triangles without area between edges and their parts: for each, the triangle with the first node of its bundle.
+    /// Adds triangles without area between a divided edge and its parts. Each triangle has the first node of the bundle as a corner.
     void fill_divided_bundles() {
         for (const OutlineEdge& edge : nodes_.edges()) {
             if (bundles_[edge.bundle].divided) parts_.push_back({edge.bundle, edge.low, edge.high, edge.weight});
@@ -238,7 +238,7 @@ private:
         }
     }
 
-    /// Adds triangles without area in the plane, between edges of the outline and those of the first corners of their nodes.
+    /// Adds triangles without area in the plane. They join each edge of the outline to the edge between the first corners of its nodes.
     void fill_heights(Triangles& triangles) const {
         const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
             const Point3d &at = outline_.place(a), &second = outline_.place(b), &third = outline_.place(c);
@@ -262,7 +262,7 @@ private:
     Line line_;
     std::vector<Bundle> bundles_;
     std::vector<BundlePart> parts_;
-    std::vector<Outgoing> outgoing_;  // from the current node
+    std::vector<Outgoing> outgoing_;  // edges and bundles to the right of the current node
     int winding_inside_ = 0;          // 0: not known yet
 };
 

@@ -48,7 +48,7 @@ struct AreaVector {
     }
 };
 
-/// `way(i)` returns the way from the first corner to corner i.
+/// Returns the area vector of an outline with this number of corners. `way(i)` returns the vector from the first corner to corner i.
 template <typename Way>
 AreaVector area_vector(std::size_t corners, const Way& way) {
     std::array<CompensatedSum, 3> sums;
@@ -67,8 +67,8 @@ AreaVector area_vector(std::size_t corners, const Way& way) {
     return area;
 }
 
-/// Returns the sum of the absolute values of the turns at the corners, along each axis. For a plane outline, the vector is along the
-/// normal, but for the signs; it is 0 if all corners are in line.
+/// Returns the sum of the absolute values of the turns at the corners, along each axis. For an outline in a plane, the vector is parallel
+/// to the normal, except for the signs. The vector is 0 if all corners are in line.
 template <typename Way>
 Point3d turn_sizes(std::size_t corners, const Way& way) {
     Point3d sizes = {}, at = way(0), edge = {};
@@ -83,7 +83,7 @@ Point3d turn_sizes(std::size_t corners, const Way& way) {
     return sizes;
 }
 
-/// Returns the ways from the first corner, scaled so that the longest is about 1.
+/// Returns the vectors from the first corner to each corner, scaled so that the longest is about 1.
 std::vector<Point3d> scaled_ways(std::span<const Point3d> places) {
     std::vector<Point3d> ways;
     double largest = 0;
@@ -122,7 +122,7 @@ bool PlaneOutline::is_convex() const {
     std::uint32_t before = size() - 1, at = 0;
     while (before > 0 && compare(before, at) == 0) --before;
     if (before == 0) return true;
-    // All turns go one way, and the outline changes between rightward and leftward twice: so it goes round once.
+    // All turns have one direction, and the outline changes between rightward and leftward twice. So it goes round once.
     const int wrong = counterclockwise_ ? -1 : 1;
     unsigned changes = 0;
     int way = compare(before, at);

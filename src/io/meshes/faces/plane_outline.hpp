@@ -1,5 +1,5 @@
-// PlaneOutline: the outline of a face in one of the planes of the coordinate axes. One coordinate is left out, so the other two stay
-// exact, and so are all decisions in the plane. OutlineNodes: the corners of an outline in the order of a sweep.
+// PlaneOutline: the outline of a face, projected along a coordinate axis. The projection drops one coordinate and keeps the other two
+// exact. So all decisions in the plane are exact. OutlineNodes: the corners of an outline in the order of a sweep.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace octopair::io {
 
-/// Checks for a stop now and then. Long computations call it in each step.
+/// Polls for a stop request once in many calls. Long computations call it in each step.
 class StopCheck {
 public:
     /// Borrows `stop`: it must outlive this object.
@@ -29,13 +29,13 @@ private:
     std::uint64_t steps_ = 0;
 };
 
-/// The corners of an outline, by their positions, in the plane across an axis.
+/// The corners of an outline, numbered by their positions, in the plane perpendicular to an axis.
 class PlaneOutline {
 public:
     /// Chooses the axis along which the area vector of the outline is largest. Borrows the places and `check`.
     /// Requires: the outline has at least two corners.
     PlaneOutline(std::span<const Point3d> places, StopCheck& check);
-    /// Returns other places in the same plane.
+    /// Returns an outline of other places in the same plane.
     PlaneOutline with_places(std::span<const Point3d> places) const {
         PlaneOutline other = *this;
         other.places_ = places;
@@ -43,7 +43,7 @@ public:
     }
 
     std::uint32_t size() const { return std::uint32_t(places_.size()); }
-    /// Returns whether the area vector points along the axis, or is 0: otherwise the outline is clockwise in the plane.
+    /// Returns false if the outline is clockwise in the plane: its area vector points against the axis. True if the area vector is 0.
     bool is_counterclockwise() const { return counterclockwise_; }
 
     /// Returns line_side() in the plane: 1 if c is left of the line from a to b, -1 if it is right of it, 0 if it is on it.
@@ -61,7 +61,7 @@ public:
         return 0;
     }
     const Point3d& place(std::uint32_t corner) const { return places_[corner]; }
-    /// Throws: Error{cancelled}. Computations that call nothing else of this object call it now and then.
+    /// Throws: Error{cancelled}. Long computations that use no other function of this object must call it in each step.
     void check() const { check_(); }
 
     /// Returns whether the outline is convex. Corners in line and corners at one place in a row count as convex.
@@ -96,12 +96,12 @@ public:
 
     /// Returns the edges of the outline that are not between two corners of one node.
     std::span<OutlineEdge> edges() { return edges_; }
-    /// Return the numbers of the edges with this low or high node.
+    /// Return the numbers of the edges whose low or high node is `node`.
     std::span<const std::uint32_t> starting_at(std::uint32_t node) const { return starting_.of(node); }
     std::span<const std::uint32_t> ending_at(std::uint32_t node) const { return ending_.of(node); }
 
 private:
-    /// Numbers of edges, by a node of theirs.
+    /// Numbers of the edges at each node.
     struct EdgesByNode {
         std::vector<std::uint32_t> begins, numbers;
         std::span<const std::uint32_t> of(std::uint32_t node) const {
