@@ -86,7 +86,7 @@ ObjectDetails details_of(const WorldView& world) {
     return details;
 }
 
-/// Returns the shapes of all objects. Takes them from the meshes.
+/// Returns the shapes of all objects. Moves them out of the meshes.
 LoadedShapes take_shapes(PlacedMeshes& placed) {
     LoadedShapes loaded;
     std::map<std::size_t, std::uint32_t> numbers;

@@ -1,4 +1,4 @@
-// PlacedMeshes: the meshes of a file, and where they are in the world. Makes scenes of them.
+// PlacedMeshes: the meshes of a file, and their objects: meshes with poses in the world. scene_of() makes scenes of them.
 //
 // - Vertices are exact in float64. Boxes are rounded outward (bounded_pose.hpp).
 // - Objects with the same mesh share a shape.
@@ -20,13 +20,13 @@
 
 namespace octopair::io {
 
-/// Removes the vertices that are no corner of a face. The others keep their order. `corners`: indices of vertices, which are renumbered.
+/// Removes the vertices that no corner refers to. The other vertices keep their order. Renumbers `corners`, the indices of vertices.
 void remove_unused_vertices(std::vector<Point3d>& vertices, std::span<std::uint32_t> corners);
 
 /// A mesh that several objects may have.
 struct SharedMesh {
     shape::Mesh triangles;
-    std::vector<Point3d> loose;  ///< vertices that no triangle has, but that count for boxes
+    std::vector<Point3d> loose;  ///< vertices that no triangle has, but that boxes enclose
     std::set<std::string> materials;
 
     bool empty() const { return triangles.vertices.empty() && loose.empty(); }

@@ -1,6 +1,6 @@
-// ReadBudget: limits what a reader of octopair takes for a file, and stops it after a stop request.
+// ReadBudget: limits the memory that a reader of octopair takes for a file, and stops the reader after a stop request.
 //
-// Readers call charge() before they allocate memory for what the file describes. So a small file cannot fill the memory.
+// Readers call charge() before they allocate memory for content that the file describes. So a small file cannot fill the memory.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ public:
     ReadBudget(std::string path, const std::stop_token& stop) : path_(std::move(path)), stop_(stop) {}
 
     const std::string& path() const { return path_; }
-    /// Counts bytes of files that were read. They raise the limit.
+    /// Counts bytes of files that were read. Each byte raises the limit.
     void add_file(std::uint64_t bytes) { file_bytes_ += bytes; }
-    /// Returns the most bytes that the content of the files may take: 4 GiB, and 64 times the size of the files.
+    /// Returns the maximum number of bytes for the content of the files: 4 GiB, and 64 times the size of the files.
     std::uint64_t limit() const { return (std::uint64_t(4) << 30) + 64 * file_bytes_; }
     /// Counts memory for `count` values of `bytes` each. Throws: Error{resource_limit} if all counted memory is more than limit().
     void charge(std::uint64_t count, std::uint64_t bytes) {

@@ -18,7 +18,7 @@ namespace {
 
 bool is_list_white(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
 
-/// Returns the value of a word that may have a comma in place of the point.
+/// Returns the value of a word that may have a decimal comma in place of the decimal point; nothing if the word is no number.
 std::optional<double> number_with_comma(std::string_view word) {
     const std::size_t comma = word.find(',');
     if (comma == std::string_view::npos || comma + 1 == word.size() || word.find('.') != std::string_view::npos)
@@ -61,7 +61,7 @@ std::optional<double> number_of_word(std::string_view word) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (end != word.data() + word.size() || error == std::errc::invalid_argument) return std::nullopt;
     if (error == std::errc()) return number;
-    return std::strtod(std::string(word).c_str(), nullptr);  // 0 or infinite: beyond float64
+    return std::strtod(std::string(word).c_str(), nullptr);  // beyond float64: 0 or infinity
 }
 
 NumberList numbers_of(std::string_view text, std::string_view separators) {

@@ -12,10 +12,10 @@ namespace octopair::io {
 /// Removes and returns the next word of a text. Words are separated by white space and the characters of `separators`. Empty: no word is left.
 std::string_view take_list_word(std::string_view& text, std::string_view separators = {});
 
-/// Returns the value of a whole word as a number, or nothing if it is none. A sign `+` is allowed.
+/// Returns the value of a whole word as a number, or nothing if the word is no number. A sign `+` is allowed.
 std::optional<double> number_of_word(std::string_view word);
 
-/// A list of numbers, or the first word that is no number.
+/// A list of numbers. If a word of the text is no number, the list also has this word.
 struct NumberList {
     std::vector<double> numbers;
     std::string_view wrong;  ///< empty: all words are numbers
@@ -43,12 +43,12 @@ public:
         : path_(std::move(path)), text_(text), marks_(marks), comment_(comment) {}
 
     TextToken next();
-    /// Returns the next token, which stays.
+    /// Returns the next token without removing it.
     TextToken peek();
     /// Returns the next number. Semicolons and commas before it are skipped.
     /// Throws: Error{bad_input} with the line if another token follows.
     double number();
-    /// Returns the next number. Throws: Error{bad_input} with the line if it is no whole number >= 0.
+    /// Returns the next number. Throws: Error{bad_input} with the line if the number is no whole number >= 0.
     std::size_t count();
 
     /// Throws: Error{bad_input} "FILE: line N: WHAT".

@@ -20,7 +20,7 @@ int hex_digit(char c) {
 
 constexpr std::uint8_t no_digit = 64;
 
-/// Value of each base64 digit, also of those of base64url; `no_digit` for other characters.
+/// Value of each digit of base64 and base64url; `no_digit` for other characters.
 constexpr std::array<std::uint8_t, 256> base64_digits = [] {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<std::uint8_t, 256> values{};

@@ -1,4 +1,4 @@
-// URIs in mesh files: data in the URI itself (glTF), or the name of a file or a part.
+// URIs in mesh files: a URI contains data (glTF), or is the name of a file or a part.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ std::optional<UriData> data_of(std::string_view uri);
 /// Returns a text without its spaces and line ends.
 std::string without_blanks(std::string_view text);
 
-/// Returns the bytes of `text` in base64 or base64url, or nothing if it is neither. Padding at the end may be left out.
+/// Returns the bytes of `text` in base64 or base64url, or nothing if the text is in neither. Padding at the end may be left out.
 /// Throws: Error{cancelled} soon after a stop request.
 std::optional<Buffer<std::byte>> decoded_base64(std::string_view text, const std::stop_token& stop);
 

@@ -81,7 +81,7 @@ const std::byte* Accessor::elements_in(GltfFile& file, const JsonFields& fields,
 
 void Accessor::read_sparse(GltfFile& file, const JsonFields& sparse) {
     const std::uint64_t count = whole_number(sparse, "count");
-    // Indices and values are arrays of their own, and the checks are the same. Only their types differ.
+    // Indices and values are separate arrays with equal checks. They differ only in their types.
     nlohmann::json values = sparse.required("values"), indices = sparse.required("indices");
     if (!values.is_object()) refuse_json_type(sparse.place_of("values"), values, "an object");
     if (!indices.is_object()) refuse_json_type(sparse.place_of("indices"), indices, "an object");

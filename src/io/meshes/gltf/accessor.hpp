@@ -28,7 +28,7 @@ public:
     /// Returns the number of elements.
     std::uint64_t count() const { return count_; }
     bool is_float() const { return type_ == Type::float32; }
-    /// Returns the distance between neighbouring values of integers. Requires: !is_float().
+    /// Returns the distance between neighbouring values that the type of integers can have. Requires: !is_float().
     double step() const;
     /// Returns the place of the accessor, for messages.
     const std::string& place() const { return place_; }
@@ -47,7 +47,7 @@ public:
 
     /// Throws: Error{bad_input} if the numbers are not unsigned integers.
     void check_indices() const;
-    /// Returns the largest number of the type. Requires: the accessor passed check_indices().
+    /// Returns the largest number that the type of the indices can have. Requires: the accessor passed check_indices().
     std::uint32_t largest_index() const;
 
 private:
@@ -55,7 +55,7 @@ private:
 
     void read_type(const JsonFields& fields);
     void read_sparse(GltfFile& file, const JsonFields& sparse);
-    /// Returns the first of `count` elements in a view, and checks that all are inside the view. Sets `stride` to that of the view.
+    /// Returns the first of `count` elements in a view, and checks that all are inside the view. Sets `stride` to the stride of the view.
     const std::byte* elements_in(GltfFile& file, const JsonFields& fields, std::uint64_t& stride) const;
     const std::byte* element_bytes(std::uint64_t index) const;
     double number(const std::byte* bytes) const;
@@ -66,7 +66,7 @@ private:
     bool normalized_ = false;
     unsigned components_;
     std::uint64_t count_ = 0;
-    const std::byte* base_ = nullptr;  // null: zeros
+    const std::byte* base_ = nullptr;  // null: all elements are zeros
     std::uint64_t stride_ = 0;
     std::vector<std::uint64_t> replaced_;  // ascending indices of the elements that `replacements_` replace
     const std::byte* replacements_ = nullptr;

@@ -1,4 +1,4 @@
-// Extensions of glTF: which ones a file may require.
+// Decides which extensions of glTF a file may require.
 #include <algorithm>
 #include <array>
 #include <string_view>

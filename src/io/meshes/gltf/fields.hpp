@@ -1,4 +1,4 @@
-// Reads values from the JSON of a glTF file. Complements JsonFields with what glTF needs.
+// Reads values from the JSON of a glTF file. Adds to JsonFields the types of values that glTF has.
 //
 // All functions throw Error{bad_input} that begins with the place, if a value has another type or form.
 #pragma once
@@ -26,7 +26,7 @@ std::uint64_t whole_number_or(const JsonFields& fields, std::string_view key, st
 /// Returns the array of a key; an empty one if the object does not have the key.
 const std::vector<nlohmann::json>& array_or_empty(const JsonFields& fields, std::string_view key);
 
-/// Returns the text of a key; an empty one if the object does not have the key, or another type.
+/// Returns the text of a key. Returns an empty text if the object does not have the key, or if its value is no text.
 std::string name_in(const JsonFields& fields, std::string_view key = "name");
 
 /// Returns the extension of an object with the given name, or null if the object does not have it.

@@ -81,7 +81,7 @@ void check_least_version(const JsonFields& root) {
                                  shown_text(least)));
 }
 
-/// Returns whether a text has the key "version" with a value that begins with 1.
+/// Returns whether a text has the key "version", with a value that begins with 1.
 bool names_version_1(std::string_view text) {
     constexpr std::string_view key = "\"version\"", blank = " \t\r\n";
     for (std::size_t at = text.find(key); at != std::string_view::npos; at = text.find(key, at + 1)) {
@@ -209,7 +209,7 @@ Buffer<std::byte> GltfFile::embedded(const JsonFields& buffer, std::string_view 
         return bytes;
     }
     auto bytes = decoded_base64(text, stop());
-    if (!bytes) bytes = decoded_base64(without_blanks(text), stop());  // lines of a text, which are rare
+    if (!bytes) bytes = decoded_base64(without_blanks(text), stop());  // rare: the base64 text has several lines
     if (!bytes) buffer.refuse_key("uri", fmt::format("'{}' is not valid base64", shown_text(uri)));
     return std::move(*bytes);
 }
@@ -224,7 +224,7 @@ Buffer<std::byte> GltfFile::other_file(const JsonFields& buffer, std::string_vie
     const std::string name = percent_decoded(uri);
     if (name.empty() || name.find('\0') != std::string::npos) refuse_uri("is not the name of a file");
     if (name.starts_with('/')) refuse_uri("is an absolute name");
-    // With ".", no name is that of a stream, as "-" is.
+    // If the folder is ".", the path cannot be "-", which would mean standard input.
     const auto parent = std::filesystem::path(path()).parent_path();
     const auto folder = parent.empty() ? std::filesystem::path(".") : parent;
     std::error_code error;

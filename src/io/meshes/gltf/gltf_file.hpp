@@ -6,7 +6,7 @@
 //
 // Source: Khronos, glTF 2.0 specification, sections 3 (JSON, buffers) and 4 (GLB).
 //
-// Extensions: which ones a file may require.
+// Extensions that a file may require:
 //
 //   geometry     KHR_mesh_quantization, EXT_mesh_gpu_instancing: read.
 //   no geometry  materials, textures, lights, metadata: accepted and not read.
@@ -62,7 +62,7 @@ public:
     /// Throws: Error{bad_input} if it is not inside its buffer, or the buffer cannot be read; Error{io_failed, cancelled}.
     BufferView view(std::uint64_t number);
 
-    /// Returns the limits of reading, which count all files.
+    /// Returns the limits for reading. All files that the glTF file names count towards them.
     ReadBudget& budget() { return budget_; }
     /// Calls ReadBudget::charge().
     void charge(std::uint64_t count, std::uint64_t bytes) { budget_.charge(count, bytes); }
@@ -80,14 +80,14 @@ private:
 
     ReadBudget budget_;
     Buffer<std::byte> content_;
-    std::span<const std::byte> binary_chunk_;  // chunk of buffers of a GLB file
+    std::span<const std::byte> binary_chunk_;  // buffers in a GLB file
     nlohmann::json root_;
     std::string version_;
     std::map<std::uint64_t, Buffer<std::byte>> buffers_;  // buffers that are not in the chunk
 };
 
-/// Returns whether a file may need Assimp: it is of glTF 1.0, or has meshes that are compressed with Draco. Looks at the text only, so
-/// it may also be true for other files. Returns false if the file cannot be read.
+/// Returns whether a file may need Assimp: it is of glTF 1.0, or has meshes that are compressed with Draco. Only searches the text, so
+/// the result may also be true for other files. Returns false if the file cannot be read.
 bool may_need_assimp(const std::string& path);
 
 /// Name of the extension that places many copies of a node.

@@ -21,7 +21,7 @@ enum class Mode : std::uint8_t { points, lines, line_loop, line_strip, triangles
 
 constexpr bool has_triangles(Mode mode) { return mode >= Mode::triangles; }
 
-/// Returns how many of `corners` corners complete faces use.
+/// Returns how many corners belong to complete faces, if a primitive has `corners` corners.
 std::uint64_t used_corners(Mode mode, std::uint64_t corners) {
     const auto at_least = [&](std::uint64_t least) { return corners < least ? 0 : corners; };
     switch (mode) {
@@ -46,7 +46,7 @@ std::uint64_t triangle_count(Mode mode, std::uint64_t used) {
     return mode == Mode::triangles ? used / 3 : used - 2;
 }
 
-/// Returns the corners of triangle `i`. Every second triangle of a strip is turned, so that all have the same side in front.
+/// Returns the corners of triangle `i`. In a strip, every second triangle is reversed, so that all triangles have the same side in front.
 std::array<std::uint64_t, 3> corners_of(Mode mode, std::uint64_t i) {
     if (mode == Mode::triangles) return {3 * i, 3 * i + 1, 3 * i + 2};
     if (mode == Mode::fan) return {0, i + 1, i + 2};
@@ -64,7 +64,7 @@ Mode mode_of(const JsonFields& fields) {
 
 struct MeshDecoder::Primitive {
     std::string_view node;
-    std::string place;  // without the file
+    std::string place;  // place in the file, without the name of the file
     Accessor positions;
     std::optional<Accessor> indices;
 

@@ -1,8 +1,8 @@
 // GltfMesh: a mesh of a glTF file, decoded to float64 triangles.
 //
 // - Triangles, strips and fans become triangles, in the order of the file. A primitive without indices uses its vertices in order.
-// - Vertices are those that triangles use, in the order of their first use, for each primitive anew.
-// - Points and lines give only vertices, which count for boxes.
+// - A primitive has the vertices that its triangles use, in the order of their first use. Primitives share no vertices.
+// - Points and lines give only vertices, which boxes enclose.
 // - Morph targets are ignored.
 #pragma once
 
@@ -20,13 +20,13 @@ namespace octopair::io::gltf {
 
 struct GltfMesh {
     SharedMesh shared;        ///< its loose vertices are those of points and lines
-    double largest = 0;       ///< largest coordinate, without its sign
+    double largest = 0;       ///< largest absolute coordinate
     bool has_floats = false;  ///< true if coordinates are float32 in the file
     double step = 0;  ///< largest distance between neighbouring values of integers; 0 if no coordinates are integers
     bool has_targets = false;         ///< true if it has morph targets
     std::size_t incomplete = 0;       ///< number of primitives whose last vertices make no complete face
     std::size_t without_surface = 0;  ///< number of primitives that are points or lines
-    std::string first_incomplete;     ///< message about the first of them, without the file
+    std::string first_incomplete;     ///< message about the first incomplete primitive, without the file
 };
 
 /// Decodes meshes of one file. Keeps working memory from mesh to mesh.
@@ -34,7 +34,7 @@ class MeshDecoder {
 public:
     explicit MeshDecoder(GltfFile& file) : file_(file) {}
 
-    /// Returns a mesh. `node` is the name of a node with the mesh, for messages.
+    /// Returns a mesh. `node`: name of a node that has the mesh, for messages.
     /// Throws: Error{bad_input} for an index out of range and for a vertex that is not finite; Error{resource_limit, cancelled};
     /// what GltfFile::view() throws.
     GltfMesh decode(std::uint64_t number, std::string_view node);
@@ -44,7 +44,7 @@ private:
     class VertexNumbers {
     public:
         void begin(std::uint64_t vertices);
-        /// Returns the number of a vertex, and whether it is used for the first time. `next`: the number of a new vertex.
+        /// Returns the number of a vertex, and whether this is its first use. `next`: number for a vertex that is new.
         std::pair<std::uint32_t, bool> number_of(std::uint64_t vertex, std::uint32_t next);
 
     private:
@@ -55,7 +55,7 @@ private:
 
     struct Primitive;
     void add_primitive(const JsonFields& fields, std::string_view node, GltfMesh& mesh);
-    /// Appends the used vertices to `to`. Returns the number of each corner in it.
+    /// Appends the vertices that the primitive uses to `to`. Returns for each corner the number of its vertex in `to`.
     std::vector<std::uint32_t> add_vertices(const Primitive& primitive, std::uint64_t corners,
                                             std::vector<Point3d>& to);
 

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns the nodes that are instances, or above an instance.
+/// Returns for each node whether it is an instance, or above an instance.
 std::vector<bool> nodes_of_instances(const NodeTree& tree) {
     std::vector<bool> found(tree.nodes().size());
     for (const Instance& instance : tree.instances()) {
@@ -34,7 +34,7 @@ std::vector<bool> nodes_of_instances(const NodeTree& tree) {
     return found;
 }
 
-/// Returns for each element of the array "nodes" whether an animation moves it. Skips what is not as it should be, because animations
+/// Returns for each element of the array "nodes" whether an animation moves it. Skips invalid parts of animations, because animations
 /// are not read.
 std::vector<bool> animated_nodes(const GltfFile& file) {
     std::vector<bool> animated(file.count("nodes"));
@@ -67,7 +67,7 @@ bool is_identity(const BoundedPose& pose) { return pose.value().rows == Pose().r
 /// The instances of a glTF file with their decoded meshes.
 class GltfModel {
 public:
-    /// Reads all meshes that instances have, each once. `progress`: called with the part that is read, from 0 to 1; or empty.
+    /// Reads all meshes that instances have, each once. `progress` receives the part that was read, from 0 to 1; it may be empty.
     /// Throws: Error{bad_input, io_failed, resource_limit, cancelled}.
     GltfModel(GltfFile& file, const std::function<void(double)>& progress);
 
@@ -110,9 +110,9 @@ GltfModel::GltfModel(GltfFile& file, const std::function<void(double)>& progress
     std::erase_if(instances, [this](const Instance& instance) { return mesh(instance).shared.empty(); });
 }
 
-// Floats were rounded to float32 in the file. Its transforms count as rounded, too, because exporters compute them in float32: so they
-// count for all coordinates that they move. Integers in a node without a transform are exact. How finely a file places its integers
-// is not part of this bound: the default tolerance would else be as large as parts are coarse, and hide that they overlap.
+// A file rounds floats to float32. Its transforms count as rounded, too, because exporters compute them in float32: so they count for all
+// coordinates that they move. Integers in a node without a transform are exact. The distance between neighbouring integers is not part
+// of this bound. Otherwise the default tolerance would be as large as this distance, and hide overlaps of coarse parts.
 double GltfModel::largest_rounded() const {
     double largest = 0;
     for (const Instance& instance : instances()) {
@@ -152,7 +152,7 @@ std::string GltfModel::warning_of_motion() const {
     std::size_t skins = 0, targets = 0, animations = 0, last = Node::no_parent;
     for (std::size_t i = 0; i < read.size(); ++i) animations += read[i] && animated[tree_.nodes()[i].number];
     for (const Instance& instance : instances()) {
-        if (std::exchange(last, instance.node) == instance.node) continue;  // a further copy of the node
+        if (std::exchange(last, instance.node) == instance.node) continue;  // a further copy of a node that was counted
         skins += tree_.nodes()[instance.node].has_skin;
         targets += mesh(instance).has_targets;
     }
@@ -167,7 +167,7 @@ std::string GltfModel::warning_of_motion() const {
 std::string GltfModel::warning_of_hidden_nodes() const {
     std::size_t hidden = 0, last = Node::no_parent;
     for (const Instance& instance : instances()) {
-        if (std::exchange(last, instance.node) == instance.node) continue;  // a further copy of the node
+        if (std::exchange(last, instance.node) == instance.node) continue;  // a further copy of a node that was counted
         hidden += tree_.nodes()[instance.node].is_hidden;
     }
     if (hidden == 0) return {};
@@ -210,7 +210,7 @@ using gltf::GltfFile;
 using gltf::GltfModel;
 using gltf::Instance;
 
-/// Checks what a file needs. Returns whether Assimp must read it.
+/// Checks that octopair can read what the file requires. Returns whether Assimp must read the file.
 bool is_for_assimp(const GltfFile& file) {
     if (!file.version().starts_with('1') && !file.version().starts_with('2'))
         refuse(file.path(), fmt::format("is of glTF {}; octopair reads glTF 2 and 1.0", shown_text(file.version())));
@@ -219,7 +219,7 @@ bool is_for_assimp(const GltfFile& file) {
     return gltf::needs_assimp(file);
 }
 
-/// Returns the objects of a model. Takes its meshes and names; the labels stay in its tree.
+/// Returns the objects of a model. Moves its meshes and names; the labels stay in its tree.
 PlacedMeshes placed_meshes(GltfModel& model) {
     PlacedMeshes placed{"node", {}, {}};
     std::unordered_map<std::uint64_t, std::size_t> numbers;

@@ -20,8 +20,8 @@ namespace octopair::io {
 /// Returns whether files with this ending are glTF. Requires: `ending` is in lower case.
 bool is_gltf_ending(std::string_view ending);
 
-/// Returns whether Assimp may have to read a glTF file: one of glTF 1.0, or with meshes that are compressed with Draco. If so, the
-/// functions below decide. Returns false if the file cannot be read.
+/// Returns whether Assimp may have to read a glTF file: it is of glTF 1.0, or has meshes that are compressed with Draco. The functions
+/// below then decide. Returns false if the file cannot be read.
 bool may_be_gltf_for_assimp(const std::string& path);
 
 /// Reads a glTF file. Returns nothing if Assimp must read it.

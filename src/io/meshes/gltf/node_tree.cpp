@@ -35,7 +35,7 @@ struct Placement {
 Pose matrix_of(const JsonFields& node) {
     const auto numbers = numbers_or<16>(node, "matrix", {});
     constexpr std::array<double, 4> last_row = {0, 0, 0, 1};
-    constexpr double rounding = 1e-5;  // rounding error of exporters that compute in float32
+    constexpr double rounding = 1e-5;  // exporters that compute in float32 make errors of this size
     Pose pose;
     for (std::size_t column = 0; column < 4; ++column) {
         if (!(std::abs(numbers[4 * column + 3] - last_row[column]) <= rounding))
@@ -98,7 +98,7 @@ bool is_hidden(const JsonFields& node) {
     return fields.find("visible") != nullptr && !fields.boolean("visible");
 }
 
-/// Accessors with the transforms of the copies of a node. Those that are missing are not set.
+/// Accessors with the transforms of the copies of a node. An accessor that the file does not have is not set.
 struct Copies {
     std::optional<Accessor> translations, rotations, scales;
     std::optional<std::uint64_t> count;
@@ -139,12 +139,12 @@ Copies copies_in(GltfFile& file, const JsonFields& attributes, const json& objec
 
 }  // namespace
 
-/// A node that is not visited yet.
+/// A node that waits to be visited.
 struct NodeTree::Waiting {
     std::uint64_t number;
     std::size_t parent;    // index in nodes_
-    std::size_t position;  // among the children of the parent
-    bool repeats;          // a sibling without a name has a mesh of the same name
+    std::size_t position;  // position among the children of the parent
+    bool repeats;          // true if the node and a sibling take their names from meshes of equal names
 };
 
 NodeTree::NodeTree(GltfFile& file) : file_(file), visited_(file.count("nodes")) {

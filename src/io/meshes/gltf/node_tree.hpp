@@ -4,8 +4,8 @@
 // - Instances are in pre-order of their nodes. The copies of a node (EXT_mesh_gpu_instancing) follow each other.
 // - Every node has at most one parent: cycles and nodes with two parents are refused.
 // - A name is the path of the node, joined by "/". If the scene has several roots, the path begins with ROOT. A node without a name
-//   has that of its mesh, or else "#" and its position among its parent's children. If siblings would have the same name of a mesh,
-//   "#" and the position follow it. Copy i of a node is NODE/#i.
+//   has the name of its mesh, or else "#" and its position among its parent's children. If siblings without names have meshes of equal
+//   names, "#" and the position follow the name. Copy i of a node is NODE/#i.
 // - A rotation becomes a matrix in float64, in which quarter turns are exact. A quaternion may have any length but 0.
 //
 // Source: Khronos, glTF 2.0 specification, section 3.5.
@@ -38,13 +38,13 @@ struct Node {
 
     std::uint64_t number;     ///< index in the array "nodes"
     std::size_t parent;       ///< index in NodeTree::nodes(), or no_parent for a root
-    std::size_t named_above;  ///< the nearest node above it that has a label, or no_parent
+    std::size_t named_above;  ///< nearest node above this node that has a label, or no_parent
     std::string path;
     std::string label;  ///< name of the node or its mesh; empty if neither has one
     BoundedPose pose;
     double translations = 0;
     bool has_skin = false;
-    bool is_hidden = false;  ///< the file says that the node, or a node above it, is not shown
+    bool is_hidden = false;  ///< true if the file hides the node, or a node above it
 };
 
 class NodeTree {
@@ -55,11 +55,11 @@ public:
     const std::vector<Instance>& instances() const { return instances_; }
     std::vector<Instance>& instances() { return instances_; }
     const std::vector<Node>& nodes() const { return nodes_; }
-    /// Returns the label of the nearest node above a node that has one; empty if there is none.
+    /// Returns the label of the nearest labelled node above a node; empty if there is none.
     std::string_view parent_label(std::size_t node) const;
     /// Returns whether the scene has several roots.
     bool has_added_root() const { return roots_ > 1; }
-    /// Returns what a user should know about scenes that are not read; empty if there are none.
+    /// Returns a note for the user if the file has scenes that are not read; otherwise an empty text.
     const std::string& note() const { return note_; }
 
 private:

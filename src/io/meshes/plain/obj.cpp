@@ -2,8 +2,8 @@
 // than three corners. Everything else but places, names and materials is left out.
 //
 // - An object begins with `o`, a group with `g`. All faces of one object and one group are one mesh, wherever they are in the file.
-// - A new object ends the group. A group without a name, or with that of its object, is the object's own mesh. A group before all
-//   objects is like an object.
+// - A new object ends the group. The faces of a group belong to the object's own mesh if the group has no name, or the object's name. A
+//   group before all objects is like an object.
 // - A comment is a line that begins with `#`, or the end of a line with places or corners. In names, `#` is a character.
 // - Keywords are small letters. If no line begins with `v`, they may be capitals.
 #include <algorithm>
@@ -53,7 +53,7 @@ ObjKeyword obj_keyword(std::string_view word) {
     const auto is_in = [&](const auto& words) {
         return std::find(std::begin(words), std::end(words), word) != std::end(words);
     };
-    // The frequent ones come first.
+    // The most frequent keywords come first, for speed.
     if (word == "v") return vertex;
     if (word == "f") return face;
     if (is_in(ignored_words)) return ignored;
@@ -73,7 +73,7 @@ bool has_small_vertex(std::string_view text) {
     return false;
 }
 
-/// Lines of one kind that are not read.
+/// Counts lines of one kind that are not read.
 struct UnreadLines {
     std::uint64_t count = 0, first = 0;
     std::string first_word;
@@ -96,7 +96,7 @@ struct ObjPart {
     std::string object;
 };
 
-/// Groups of several objects may have one name. They get the object's name in front.
+/// If several groups have the same name, puts the name of the object in front of each group's name.
 void name_equal_groups(std::vector<ObjPart>& parts, const FileContent& file) {
     std::unordered_map<std::string, std::size_t> uses;
     std::size_t steps = 0;
@@ -124,7 +124,7 @@ public:
         while (lines_.next()) {
             is_empty = false;
             if (lines_.begins_with('#')) continue;
-            if (!lines_.contains('#')) lines_.join_continued('\\');  // a comment ends with its line
+            if (!lines_.contains('#')) lines_.join_continued('\\');  // a comment cannot be continued
             read_line();
         }
         if (is_empty) refuse(file_.path, "is empty");
@@ -143,7 +143,7 @@ public:
 private:
     void read_line() {
         const std::string_view word = lines_.word();
-        if (word.empty()) return;  // only the mark of a continued line
+        if (word.empty()) return;  // the line has only the mark of a continued line
         switch (keyword_of(word)) {
             case ObjKeyword::vertex:
                 return read_vertex();
@@ -210,7 +210,7 @@ private:
         }
     }
 
-    /// Continues the mesh of the current group, or makes it.
+    /// Makes the mesh of the current group, or finds it if the file had this group before.
     void begin_part() {
         const std::string& group = group_.empty() ? object_ : group_;
         const std::string& object = object_.empty() ? group : object_;
@@ -261,7 +261,7 @@ private:
         return meshes;
     }
 
-    /// Gives each mesh the vertices that it uses, in the order of their use.
+    /// Copies to each mesh the vertices that it uses, in the order of their use.
     void give_vertices(std::vector<PlainMesh>& meshes) const {
         constexpr std::uint32_t unused = ~std::uint32_t(0);
         std::vector<std::uint32_t> numbers(vertices_.size(), unused);
@@ -289,8 +289,8 @@ private:
     std::map<std::pair<std::string, std::string>, std::size_t> numbers_;  // indices of parts, by object and group
     std::size_t current_ = 0;                                             // part that faces are added to
     std::string object_, group_, material_;
-    bool material_is_new_ = false;     // true if the current mesh may lack the material
-    std::int64_t largest_corner_ = 0;  // the largest positive number of a corner
+    bool material_is_new_ = false;     // true if the current mesh may not have the material yet
+    std::int64_t largest_corner_ = 0;  // largest positive number of a vertex that a corner refers to
     std::uint64_t line_of_largest_ = 0;
     UnreadLines unknown_, freeform_, calls_;
 };

@@ -4,9 +4,9 @@
 // ends with its line. The keyword says how many numbers follow the coordinates of a vertex.
 //
 // - In most files, each vertex and each face has a line of its own. They are read by lines.
-// - All other files are read as streams. A file does not say everything about its layout, for example whether colours have three or four
-//   numbers. The layout is right if the last face ends with the file.
-// - If no layout is right, and the file can be read by lines, then words after coordinates and corners are skipped, whatever they are.
+// - All other files are read as streams. A file does not state its whole layout, for example whether colours have three or four numbers.
+//   The reader tries layouts. A layout is right if the last face ends at the end of the file.
+// - If no layout is right, and the file can be read by lines, then the reader skips all other words after coordinates and corners.
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -28,10 +28,10 @@ bool is_digits(std::string_view text) { return text.find_first_not_of("012345678
 struct OffKeyword {
     std::size_t length = 0;  ///< 0: there is none
     bool colours = false;
-    std::uint64_t other_numbers = 0;  ///< numbers of a vertex after its coordinates, without those of its colour
+    std::uint64_t other_numbers = 0;  ///< numbers of a vertex, besides its coordinates and its colour
 };
 
-/// A small n is another keyword, for vertices of any number of coordinates.
+/// A small n before OFF is not read: it means vertices with any number of coordinates.
 OffKeyword keyword_of(std::string_view word) {
     OffKeyword found;
     for (std::size_t at = 0; at < word.size();) {
@@ -59,12 +59,12 @@ OffKeyword keyword_of(std::string_view word) {
 /// Properties of the layout that the file does not state.
 struct OffLayout {
     bool by_lines = true;        ///< each vertex and each face has a line of its own
-    bool edges = true;           ///< the number of edges follows that of faces, if not on the same line
+    bool edges = true;           ///< the number of edges follows the number of faces on a later line
     bool face_colours = true;    ///< a face may have a colour, to the end of its line
     bool short_colours = false;  ///< colours of vertices have three numbers, not four
 };
 
-/// The content of a file, as read in one layout.
+/// The content of a file, as it was read in one layout.
 struct OffContent {
     PlainMesh mesh;
     OffKeyword keyword;
@@ -159,7 +159,7 @@ private:
         skip_words(stated.other_numbers + colour, "a normal, a colour or a place in a texture");
     }
 
-    /// Compares the number of words after a vertex with that of the first vertex.
+    /// Compares the number of words after a vertex with the number after the first vertex.
     void compare_rest() {
         const std::uint64_t words = lines_.skip_line();
         if (content_.mesh.vertices.size() == 1) words_after_vertex_ = words;
@@ -167,7 +167,7 @@ private:
         content_.is_stated &= is_stated(words);
         content_.is_bare &= words == 0;
     }
-    /// Returns whether the keyword says that so many numbers follow the coordinates of a vertex.
+    /// Returns whether the keyword states that `words` numbers follow the coordinates of a vertex.
     bool is_stated(std::uint64_t words) const {
         const OffKeyword& stated = content_.keyword;
         if (!stated.colours) return words == stated.other_numbers;
@@ -210,10 +210,10 @@ private:
     TextLines lines_;
     OffContent content_;
     std::uint64_t words_after_vertex_ = 0;
-    std::uint64_t elements_ = 0;  // vertices and faces, if not by lines
+    std::uint64_t elements_ = 0;  // number of vertices and faces that a stream had so far
 };
 
-/// Returns the layouts that a file may have as a stream, those that the format prescribes first. `content`: what reading by lines found.
+/// Returns the layouts to try for a stream; those that the format prescribes come first. `content`: result of reading by lines.
 std::vector<OffLayout> stream_layouts(const OffContent& content) {
     constexpr OffLayout prescribed = {false, true, true, false};
     if (content.has_lines()) return {prescribed};
@@ -229,9 +229,9 @@ std::vector<OffLayout> stream_layouts(const OffContent& content) {
     return layouts;
 }
 
-/// Reads a file as a stream: in the first layout in which the file ends with the last face, or else in the first.
+/// Reads a file as a stream. Uses the first layout with which the last face ends the file; if there is none, the first layout.
 OffContent read_stream(FileContent file, const OffContent& by_lines) {
-    file.progress = {};  // It ended when the file had been read by lines.
+    file.progress = {};  // Reading by lines has already reported the whole progress.
     std::optional<OffContent> best;
     for (const OffLayout& layout : stream_layouts(by_lines)) {
         OffContent content = OffParser(file, layout).parse();
@@ -241,14 +241,14 @@ OffContent read_stream(FileContent file, const OffContent& by_lines) {
     return std::move(*best);
 }
 
-/// Returns the content in the layout that suits a file. It may have an error.
+/// Returns the content of a file in the most likely layout. The content may have an error.
 OffContent read_content(const FileContent& file) {
     OffContent by_lines = OffParser(file, {}).parse();
     if (by_lines.is_complete() && by_lines.has_lines()) return by_lines;
     OffContent stream = read_stream(file, by_lines);
     if (stream.is_complete()) return stream;
     if (!by_lines.error || !stream.error) return by_lines;
-    // Beyond the first vertices the layout is known, and the error is one of the file. Before, the layout that got further is the better guess.
+    // After the first vertices, the layout is certain, and an error is one of the file. Before, the layout that got further is likelier.
     if (by_lines.mesh.vertices.size() > 1) return by_lines.is_uniform ? std::move(by_lines) : std::move(stream);
     return stream.last_line <= by_lines.last_line ? std::move(by_lines) : std::move(stream);
 }

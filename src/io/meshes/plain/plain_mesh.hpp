@@ -34,12 +34,12 @@ struct PlainMesh {
     std::vector<std::uint64_t> ends;
 
     void end_face() { ends.push_back(corners.size()); }
-    /// Returns the number of triangles that faces are cut into that do not touch themselves: a face of n corners into n - 2.
+    /// Returns the number of triangles, if no face touches itself: a face of n corners has n - 2 triangles.
     std::uint64_t triangles() const;
 };
 
-/// Cuts the faces into triangles, in order (FaceCutter). Faces with fewer than three corners are left out. Adds the faces that cross
-/// themselves to `crossing`, with the name of the mesh.
+/// Cuts the faces into triangles, in order (FaceCutter). Leaves out faces with fewer than three corners. Adds each face that crosses
+/// itself to `crossing`, with the name of the mesh.
 /// Throws: Error{cancelled}.
 shape::Mesh cut_into_triangles(PlainMesh mesh, CrossingFaces& crossing, const std::stop_token& stop);
 
@@ -50,7 +50,7 @@ struct FileContent {
     const std::stop_token& stop;
     std::function<void(double)> progress =
         {};  ///< called with the part of the file that is parsed, from 0 to 1; or empty
-    std::vector<std::string>* warnings = nullptr;  ///< gets what a user should know about the file; or null
+    std::vector<std::string>* warnings = nullptr;  ///< receives notes for the user about the file; or null
 
     /// Parsers call this from time to time. `offset`: bytes parsed. Throws: Error{cancelled}.
     void checkpoint(std::size_t offset) const;
@@ -67,13 +67,13 @@ PlainMesh parse_ply(const FileContent& file);
 /// Returns whether files with this ending have a simple format. Requires: `ending` is in lower case.
 bool is_plain_ending(std::string_view ending);
 
-/// Reads a file of a simple format. The name of an object is that of the file and, if the file has several meshes or names them, "/"
-/// and the name of the mesh or "#" and its position.
+/// Reads a file of a simple format. The name of an object is that of the file, if its only mesh has no name or is a solid of STL. For
+/// other files, "/" follows, and then the name of the mesh, or "#" and its position.
 /// Throws: what the parsers throw; Error{io_failed, resource_limit}.
 LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop);
 
-/// Reads all meshes of such a file as one, for a scene that names it. Adds the file's LoadedScene::largest_rounded and warnings to
-/// `scene`.
+/// Reads all meshes of such a file as one mesh, for a JSON scene that names the file. Adds the file's LoadedScene::largest_rounded and
+/// warnings to `scene`.
 shape::Mesh read_plain_mesh(const std::string& path, LoadedScene& scene, const std::stop_token& stop);
 
 }  // namespace octopair::io

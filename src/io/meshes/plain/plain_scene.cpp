@@ -27,7 +27,7 @@ std::vector<PlainMesh> parse(const FileContent& file, std::string_view ending) {
     return meshes;
 }
 
-/// Returns the largest coordinate of meshes in float32; 0 for others.
+/// Returns the largest absolute coordinate of the meshes that have float32 coordinates; 0 if there are none.
 double largest_rounded(const std::vector<PlainMesh>& meshes) {
     double largest = 0;
     for (const PlainMesh& mesh : meshes) {
@@ -52,7 +52,7 @@ std::vector<PlainMesh> read_meshes(const std::string& path, const std::stop_toke
     return meshes;
 }
 
-/// Loops over meshes call this for each. Throws: Error{cancelled} now and then after a stop request.
+/// Polls for a stop request. Loops over meshes call this for each mesh. Throws: Error{cancelled} now and then after a stop request.
 void check_stop(std::size_t mesh, const std::stop_token& stop) {
     if (mesh % 4096 == 0 && stop.stop_requested()) cancel();
 }
@@ -75,7 +75,7 @@ std::vector<std::string> names_of(const std::vector<PlainMesh>& meshes, const st
     return names;
 }
 
-/// Returns the details of all meshes. `names`: their names, after names_of().
+/// Returns the details of all meshes. `names`: result of names_of().
 ObjectDetails details_of(const std::vector<PlainMesh>& meshes, const std::vector<std::string>& names,
                          const std::stop_token& stop) {
     ObjectDetails details;

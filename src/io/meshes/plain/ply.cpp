@@ -1,7 +1,7 @@
 // parse_ply(): the polygon file format of Stanford.
 //
-// Vertices and faces are read, in any order. Other elements and properties are skipped. A text is a stream of values, in which lines
-// usually, but not always, are elements.
+// Vertices and faces are read, in any order. Other elements and properties are skipped. A text is a stream of values. Usually, but not
+// always, each element has a line of its own.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -51,7 +51,7 @@ public:
     }
     [[noreturn]] void refuse_element(const FileContent&, std::string_view why) const { lines_.refuse_line(why); }
 
-    /// Returns the first line that has more values than its element has properties; 0: there is none.
+    /// Returns the first line that has more values than its element has properties; 0 if no line has too many.
     std::uint64_t surplus() const { return surplus_; }
     /// Returns whether a line ended before the last property.
     bool ends_early() const { return ends_early_; }
@@ -114,7 +114,7 @@ private:
     std::uint64_t elements_ = 0;
 };
 
-/// Which property of an element is which coordinate, or the corners. All others are skipped.
+/// The property of an element that is each coordinate, or the list of corners. All other properties are skipped.
 struct Roles {
     std::array<std::size_t, 3> coordinates = {none, none, none};
     std::size_t corners = none;
@@ -185,8 +185,8 @@ public:
     }
 
 private:
-    /// Calls take(number of the property, value) for the values of an element that have a role. Returns the number of properties that the
-    /// element has: lines of a text may end early, as some programs write them.
+    /// Calls take(number of the property, value) for the values of an element that have a role. Returns the number of properties that were
+    /// read. Lines of a text may end early, because some programs leave out the last values.
     template <typename Take>
     std::size_t visit(const PlyElement& element, const Roles& roles, const Take& take) {
         values_.begin_element();
@@ -214,7 +214,7 @@ private:
     Values& values_;
 };
 
-/// Throws: Error{bad_input} if a face has a corner whose place is not known. Other vertices do not matter.
+/// Throws: Error{bad_input} if a face has a corner without a finite place. Vertices without a face are not checked.
 void check_corners(const FileContent& file, const PlainMesh& mesh) {
     for (const std::uint32_t corner : mesh.corners) {
         for (const double coordinate : mesh.vertices[corner]) {
@@ -232,7 +232,7 @@ PlainMesh read_elements(const FileContent& file, const PlyHeader& header, Values
     ElementReader<Values> reader(file, values);
     for (const PlyElement& element : header.elements) {
         const bool is_read = element.name == "vertex" || element.name == "face";
-        if (element.properties.empty() && !is_read) continue;  // nothing, or an empty line
+        if (element.properties.empty() && !is_read) continue;  // the element has no content, or at most an empty line
         // An element has at least one byte in a binary file, and a line in a text file.
         const std::uint64_t least =
             std::max<std::uint64_t>(1, header.encoding == PlyEncoding::text ? 2 : element.least_bytes());
@@ -264,14 +264,14 @@ PlainMesh read_binary(const FileContent& file, const TextLines& lines, const Ply
     return mesh;
 }
 
-/// The content of a text file, as read by lines or as a stream.
+/// The content of a text file, as it was read by lines or as a stream.
 struct PlyText {
     PlainMesh mesh;
     std::uint64_t surplus = 0;      ///< first line that is not read whole; 0: none
     bool ends_early = false;        ///< a line ends before the last value of its element
     std::uint64_t unread_line = 0;  ///< first line after the last element; 0: none
     std::uint64_t last_line = 0;    ///< number of the last line that was read
-    std::optional<Error> error;     ///< why the file is invalid if it is read so
+    std::optional<Error> error;     ///< error in this reading of the file, if the file is invalid
 
     bool is_complete() const { return !error && unread_line == 0; }
     bool has_lines() const { return surplus == 0 && !ends_early; }
@@ -303,7 +303,7 @@ PlyText read_any_text(const FileContent& file) {
     PlyText by_lines = read_text(file, true);
     if (by_lines.is_complete() && by_lines.has_lines()) return by_lines;
     FileContent again = file;
-    again.progress = {};  // It ended when the file had been read by lines.
+    again.progress = {};  // Reading by lines has already reported the whole progress.
     PlyText stream = read_text(again, false);
     if (stream.is_complete()) return stream;
     if (!by_lines.error || !stream.error) return by_lines;

@@ -1,6 +1,6 @@
 // The header of PLY files: the encoding, and the elements in their order, with their properties.
 //
-// The lines of the header end with LF, CR LF or CR, all alike. The elements of a binary file begin right after the last of them.
+// The lines of the header end with LF, CR LF or CR, all in the same way. The elements of a binary file begin right after the last line.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::text;
     std::vector<PlyElement> elements;
 
-    /// Returns the number of vertices. They may come after the faces.
+    /// Returns the number of vertices, which the header may list after the faces.
     std::uint64_t vertices() const {
         std::uint64_t count = 0;
         for (const PlyElement& element : elements) count += element.name == "vertex" ? element.count : 0;

@@ -40,7 +40,7 @@ bool is_binary(std::string_view bytes) {
            (header.size() == header_bytes && (bytes.size() - header_bytes) / triangle_bytes >= stated_triangles(bytes));
 }
 
-/// Returns the number of triangles to read: the stated one, or all if it was left 0.
+/// Returns the number of triangles to read: the stated number. If the stated number is 0, returns the number that the file has room for.
 /// Throws: Error{bad_input} if the file has fewer triangles than it states, or more.
 std::uint64_t triangles_of_binary(const FileContent& file) {
     if (file.bytes.size() < header_bytes)
@@ -74,7 +74,7 @@ PlainMesh parse_binary(const FileContent& file) {
     mesh.vertices.reserve(3 * triangles);
     for (std::uint64_t i = 0; i < triangles; ++i) {
         if (i % 4096 == 0) file.checkpoint(std::size_t(i * triangle_bytes));
-        const char* const at = file.bytes.data() + header_bytes + i * triangle_bytes + 12;  // behind the normal
+        const char* const at = file.bytes.data() + header_bytes + i * triangle_bytes + 12;  // after the normal
         for (unsigned corner = 0; corner < 3; ++corner) {
             Point3d place;
             for (unsigned axis = 0; axis < 3; ++axis) {
@@ -111,7 +111,7 @@ bool is_like_number(std::string_view word) {
 
 bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// Returns the first word of a text, and makes `at` the place after it. Returns nothing at the end.
+/// Returns the first word from `at` on, and moves `at` behind this word. Returns nothing at the end.
 std::string_view word_at(std::string_view text, std::size_t& at) {
     while (at < text.size() && is_blank(text[at])) ++at;
     const std::size_t begin = at;
@@ -124,7 +124,7 @@ std::string_view without_blank_after(std::string_view text) {
     return text;
 }
 
-/// Returns whether a word is `endsolid`, also as two words. Makes `at` the place after it if it is.
+/// Returns whether a word is `endsolid`, or `end` before `solid`. If so, moves `at` behind the last word.
 bool ends_solid(std::string_view word, std::string_view text, std::size_t& at) {
     if (is(word, "endsolid")) return true;
     std::size_t after = at;
@@ -198,7 +198,7 @@ private:
         }
     }
 
-    /// Skips the name after `endsolid`. Finds whether another solid follows in the line.
+    /// Skips the name after `endsolid`. Finds out whether another solid follows in the line.
     void skip_name(std::string_view name) {
         std::string_view rest = lines_.rest();
         if (rest.starts_with(name)) rest.remove_prefix(name.size());
@@ -231,7 +231,7 @@ private:
         return noted(lines_.word());
     }
 
-    /// Skips the word `normal` and the three numbers after it, as far as they are there, on one line or several.
+    /// Skips the word `normal` and the three numbers after it. Some of them may be missing, or on later lines.
     void skip_normal() {
         constexpr int words = 4;
         for (int i = 0; i < words; ++i) {
@@ -259,7 +259,7 @@ private:
         }
     }
 
-    /// Keeps a word for expect(). Returns it.
+    /// Stores a word for the messages of expect(), and returns this word.
     std::string_view noted(std::string_view word) { return last_word_ = word; }
 
     /// Returns whether a statement is an end, such as "endloop" or "end loop".
@@ -274,7 +274,7 @@ private:
     const FileContent& file_;
     TextLines lines_;
     bool follows_in_line_ = false;      // true if the next solid begins in the line in which the last one ends
-    bool is_at_begin_of_line_ = false;  // true if the next word is the first of its line, and not looked at yet
+    bool is_at_begin_of_line_ = false;  // true if the next word is the first word of its line, and was not read yet
     std::uint64_t facets_ = 0;
     std::string_view last_word_;
 };

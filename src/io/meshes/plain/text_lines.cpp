@@ -21,7 +21,7 @@ std::string_view without_space_before(std::string_view text) {
     return text;
 }
 
-/// Fortran writes the exponent of a number with D: 1.5D+03.
+/// Replaces D, with which Fortran begins the exponent of a number (1.5D+03), by E.
 void replace_fortran_exponent(std::string& number) {
     const std::size_t at = number.find_first_of("dD");
     if (at == std::string::npos || at == 0) return;
@@ -116,7 +116,7 @@ double TextLines::unusual_number(std::string_view what) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = end == text.data() + text.size() && !text.empty();
     if (whole && error == std::errc::result_out_of_range) {
-        value = std::strtod(text.c_str(), nullptr);  // 0, the least numbers, or infinity
+        value = std::strtod(text.c_str(), nullptr);  // the result is 0, a subnormal number or infinity
     } else if (!whole || error != std::errc()) {
         const bool comma = given.find(',') != std::string_view::npos;
         refuse_line(fmt::format("{} is '{}', not a number{}", what, shown(given),

@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 2> core_spaces = {"http://schemas.microso
                                                          "http://schemas.microsoft.com/3dmanufacturing/"};
 constexpr std::array<std::string_view, 2> core_versions = {"2015/02", "2013/01"};
 
-/// Slices are a second description of a mesh. Objects whose mesh is only coarse are marked (ModelObject::is_coarse).
+/// Namespaces that change no shape. Slices only describe a mesh a second time. Objects with a coarse mesh are marked (is_coarse).
 constexpr std::array<std::string_view, 6> harmless_spaces = {
     production_space,
     alternatives_space,

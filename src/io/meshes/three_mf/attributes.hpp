@@ -1,7 +1,7 @@
 // Attributes of 3MF.
 //
 // - Values are numbers, identifiers and matrices, as the XML schema writes them. White space around a value is allowed.
-// - Namespaces: an extension is known by the URI of its namespace. Its prefix can be any.
+// - Namespaces: the URI of its namespace identifies an extension. The prefix can be any text.
 // - A file that needs an extension which octopair does not read is refused, because the extension may change shapes.
 #pragma once
 
@@ -37,16 +37,16 @@ inline constexpr std::string_view production_space = "http://schemas.microsoft.c
 /// Namespaces by their prefixes.
 using Prefixes = std::map<std::string, std::string, std::less<>>;
 
-/// Returns whether a namespace is that of 3MF itself, in a version that octopair reads. Also true for none, which some programs write.
+/// Returns whether a namespace is that of 3MF itself, in a version that octopair reads. Also true for an empty one, which occurs in files.
 bool is_core_space(std::string_view space);
 
 /// Returns the version that the namespace of 3MF has, for example "2015/02"; empty for other namespaces.
 std::string_view version_in(std::string_view space);
 
-/// Returns whether octopair reads an extension, or the extension says nothing about shapes.
+/// Returns whether octopair reads an extension, or the extension has no effect on shapes.
 bool is_harmless_space(std::string_view space);
 
-/// Returns a namespace for messages: its first 200 characters in printable ASCII, because the end of a URI has the version.
+/// Returns a namespace for messages: its first 200 characters in printable ASCII. The end of a URI is needed: it has the version.
 std::string shown_space(std::string_view space);
 
 /// Checks the value of the attribute requiredextensions. Returns the namespaces that it names. `place`: the file, part and line, for

@@ -59,7 +59,7 @@ bool MeshBuilder::add_triangle(const XmlTag& element, const XmlParser& parser) {
     return corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2];
 }
 
-/// Notes the material of a triangle. Wrong numbers are left out, because materials say nothing about shapes.
+/// Notes the material of a triangle. Ignores invalid numbers, because materials have no effect on shapes.
 void MeshBuilder::add_property(const XmlTag& element) {
     const char* const index = element.find("p1");
     if (index == nullptr) {

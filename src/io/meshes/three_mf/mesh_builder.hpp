@@ -17,22 +17,22 @@
 
 namespace octopair::io::three_mf {
 
-/// A property of a group, for example a base material: the identifier of the group, and the index in it.
+/// A property in a group of properties, for example a base material: identifier of the group, and index of the property in the group.
 using Property = std::pair<std::uint32_t, std::uint32_t>;
 
 class MeshBuilder {
 public:
     explicit MeshBuilder(ReadBudget& budget) : budget_(budget) {}
 
-    /// Begins the mesh of another object. `own`: the property of the object.
+    /// Begins the mesh of the next object. `own`: property of the object, for triangles without a property.
     void begin(std::optional<Property> own);
     /// Adds the vertex of an element. Throws: Error{bad_input} at the line of `parser`; Error{resource_limit}.
     void add_vertex(const XmlTag& element, const XmlParser& parser);
     /// Adds the triangle of an element. Returns whether it has three different vertices. Throws: as add_vertex().
     bool add_triangle(const XmlTag& element, const XmlParser& parser);
-    /// Returns the mesh. Vertices that no triangle uses are left out, but if there are no triangles, all are loose.
+    /// Returns the mesh. Leaves out vertices that no triangle uses. If there are no triangles, all vertices become loose vertices.
     SharedMesh take();
-    /// Returns the properties of the mesh, of the last take().
+    /// Returns the properties that the mesh of the last take() uses.
     const std::set<Property>& properties() const { return properties_; }
 
 private:
@@ -41,7 +41,7 @@ private:
     ReadBudget& budget_;
     shape::Mesh mesh_;
     std::optional<Property> own_;
-    std::optional<Property> last_;  // property of the triangle before
+    std::optional<Property> last_;  // property of the previous triangle
     bool uses_own_ = false;
     std::set<Property> properties_;
 };

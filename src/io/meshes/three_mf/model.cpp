@@ -17,7 +17,7 @@ std::string place_of_part(std::string_view name, const ReadBudget& budget) {
     return fmt::format("{}: {}", budget.path(), shown_text(name));
 }
 
-/// Gets the namespace of the first element.
+/// Stores the version in the namespace of the first element.
 class VersionHandler final : public XmlHandler {
 public:
     void begin(const XmlTag& element) override {

@@ -1,8 +1,8 @@
-// Model: the start part of a 3MF file and the parts that it refers to, with all references resolved. ModelPart: what a part says: its
-// objects, and the items to build.
+// Model: the start part of a 3MF file and the parts that it refers to, with all references resolved. ModelPart: the content of one
+// part: its objects, and the items to build.
 //
 // - Numbers are the nearest float64. Vertices that no triangle uses are left out.
-// - Indices of vertices are right. An object refers only to objects of the same part before it, or to those of other parts.
+// - All indices of vertices exist. An object refers only to objects before it in the same part, or to objects of other parts.
 // - All parts have the same unit.
 // - No object contains itself: objects refer to objects before them, and only the start part refers to other parts.
 //
@@ -35,12 +35,12 @@ struct ObjectPlace {
 
 /// A reference to an object, with a pose: a component of an object, or an item of the build.
 struct Reference {
-    std::uint32_t object = 0;  ///< its identifier
+    std::uint32_t object = 0;  ///< identifier of the object
     std::string part;          ///< name of the part of the object; empty: the same part
     Pose pose;
     std::string part_number;  ///< part number of an item
     std::uint64_t line = 0;
-    ObjectPlace target;  ///< set by Model
+    ObjectPlace target;  ///< place of the object; set by Model
 };
 
 enum class ObjectType : std::uint8_t { model, support, solidsupport, surface, other };
@@ -49,15 +49,15 @@ struct ModelObject {
     std::uint32_t id = 0;
     std::string name, part_number;
     ObjectType type = ObjectType::model;
-    bool is_coarse = false;  ///< the mesh stands for a finer shape, which is elsewhere
+    bool is_coarse = false;  ///< the mesh replaces a finer shape, which other data describe
     bool has_mesh = false, has_components = false;
     std::string extension;  ///< first element of an extension that may change the shape; empty if there is none
-    SharedMesh mesh;        ///< if has_mesh
+    SharedMesh mesh;        ///< valid if has_mesh
     std::vector<Reference> components;
     std::uint64_t line = 0;
 };
 
-/// Number of cases of the same kind, and the place of the first one.
+/// Number of problems of one kind, and the place of the first problem.
 struct CountedNote {
     std::uint64_t count = 0;
     std::string first;
@@ -66,23 +66,23 @@ struct CountedNote {
 struct ModelPart {
     std::string name;     ///< name of the part, for example "3D/3dmodel.model"
     std::string version;  ///< version of the namespace, for example "2015/02"; empty if the part has none
-    std::string unit;     ///< as in the file, for example "millimeter"
+    std::string unit;     ///< unit as the file writes it, for example "millimeter"
     bool needs_slices = false;
     std::vector<ModelObject> objects;
     std::unordered_map<std::uint32_t, std::size_t> numbers;  ///< identifier of an object -> index in `objects`
     std::vector<Reference> items;
-    CountedNote flat_triangles;     ///< with the same vertex twice
+    CountedNote flat_triangles;     ///< triangles with two equal vertices
     CountedNote unknown_elements;   ///< elements that 3MF does not define
     CountedNote unknown_materials;  ///< references to materials that do not exist
 };
 
-/// How a part is read.
+/// Says how to read a part.
 struct PartReading {
-    bool is_root = true;  ///< the part has the items to build, and may refer to other parts
+    bool is_root = true;  ///< true: the part has the items to build, and may refer to other parts
     ReadBudget& budget;
 };
 
-/// Parses a part. `name`: that of the part.
+/// Parses a part. `name`: name of the part.
 /// Throws: Error{bad_input} "FILE: NAME: line N: ..."; Error{resource_limit, cancelled}; what the source throws.
 ModelPart parse_model_part(std::string name, const TextSource& source, const PartReading& reading);
 
@@ -102,11 +102,11 @@ public:
     const std::deque<ModelPart>& parts() const { return parts_; }
     const ModelPart& start() const { return parts_.front(); }
     const ModelObject& object(const ObjectPlace& place) const { return parts_[place.part].objects[place.number]; }
-    /// Returns the mesh of an object, without its vertices and triangles afterwards.
+    /// Returns the mesh of an object, and removes it from the object.
     SharedMesh take_mesh(const ObjectPlace& place) { return std::move(parts_[place.part].objects[place.number].mesh); }
     /// Returns "FILE: PART: line N".
     std::string place_of(std::size_t part, std::uint64_t line) const;
-    /// Returns what a user should know about the parts, each one line "FILE: ...".
+    /// Returns warnings for the user about the parts, each one line "FILE: ...".
     std::vector<std::string> warnings() const;
 
 private:
@@ -115,8 +115,8 @@ private:
     void resolve(std::vector<Reference>& references, std::size_t part);
 
     Package& package_;
-    std::deque<ModelPart> parts_;                                // a part keeps its place when others are added
-    std::unordered_map<std::string, std::size_t> part_numbers_;  // name, as the references have it -> index in parts_
+    std::deque<ModelPart> parts_;                                // a deque: parts keep their addresses
+    std::unordered_map<std::string, std::size_t> part_numbers_;  // name in references -> index in parts_
 };
 
 }  // namespace octopair::io::three_mf

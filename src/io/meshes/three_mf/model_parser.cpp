@@ -21,7 +21,7 @@ std::string text_or_empty(const char* text) { return text == nullptr ? std::stri
 
 }  // namespace
 
-/// An element of 3MF within another one, and what to do at its begin.
+/// Allowed element within another element, and the action when the element begins.
 struct ModelParser::Rule {
     Place within;
     std::string_view name;
@@ -236,7 +236,7 @@ std::uint32_t ModelParser::identifier(const XmlTag& element, std::string_view ke
     return *number;
 }
 
-/// Returns the identifier of a resource, which no other resource may have.
+/// Returns the identifier of a resource. Refuses an identifier that another resource has.
 std::uint32_t ModelParser::new_identifier(const XmlTag& element) {
     const std::uint32_t id = identifier(element, "id");
     const auto [line, is_new] = lines_.try_emplace(id, parser_.line());
@@ -267,7 +267,7 @@ Reference ModelParser::reference(const XmlTag& element, std::string_view kind) {
     return to;
 }
 
-/// Components refer to objects before them. So no object contains itself.
+/// Refuses a component that refers to an object after it. So no object can contain itself.
 void ModelParser::check_component(const Reference& component) const {
     if (!component.part.empty() || part_.numbers.contains(component.object)) return;
     const std::uint32_t own = part_.objects.back().id;

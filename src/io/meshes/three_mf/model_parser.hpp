@@ -1,6 +1,6 @@
-// ModelParser: fills a ModelPart with what its XML says.
+// ModelParser: reads the XML of a part into a ModelPart.
 //
-// - Elements of extensions are skipped. Those within an object that may change its shape are noted.
+// - Elements of extensions are skipped. If an element within an object may change the object's shape, the parser notes the element.
 // - Elements that 3MF does not define are skipped and counted, because programs write such elements.
 #pragma once
 
@@ -23,7 +23,7 @@ public:
     /// Borrows `part`. `place`: the file and the part, for messages.
     ModelParser(ModelPart& part, const std::string& place, const PartReading& reading);
 
-    /// Parses a text to its end, and checks what only the whole part shows. Throws: as parse_model_part().
+    /// Parses a text to its end, and makes the checks that need the whole part. Throws: as parse_model_part().
     void parse(const TextSource& source);
 
     void prefix(std::string_view prefix, std::string_view uri) override;
@@ -31,7 +31,7 @@ public:
     void end() override;
 
 private:
-    /// The element that the parser is in.
+    /// The kind of element that contains the parser's position.
     enum class Place : std::uint8_t {
         document,
         model,
@@ -49,7 +49,7 @@ private:
     struct Rule;
     static const Rule* rule_for(Place within, std::string_view name);
 
-    /// Returns the place within an element. Calls what its rule says.
+    /// Returns the place inside `element`, an element in `within`. Calls the action of the element's rule.
     Place enter(Place within, const XmlTag& element);
     void note_extension(Place within, const XmlTag& element);
     void begin_model(const XmlTag& element);
@@ -86,7 +86,7 @@ private:
     std::string core_;   // namespace of 3MF in this part
     std::vector<Place> places_ = {Place::document};
     std::uint64_t elements_ = 0;
-    std::optional<Property> own_property_;                                   // property of the object
+    std::optional<Property> own_property_;                                   // property of the current object
     std::vector<std::set<Property>> properties_;                             // properties of each object
     std::unordered_map<std::uint32_t, std::vector<std::string>> materials_;  // groups of base materials, by identifier
     std::unordered_map<std::uint32_t, std::uint64_t> lines_;  // line of each object and group of materials

@@ -18,7 +18,7 @@ namespace octopair::io::three_mf {
 namespace {
 
 constexpr std::string_view relationships = "_rels/.rels";
-constexpr std::size_t several = ~std::size_t(0);  // parts have the same name
+constexpr std::size_t several = ~std::size_t(0);  // several parts have this name
 
 Buffer<std::byte> package_bytes(const std::string& path, const std::stop_token& stop) {
     const InputFile file(path);

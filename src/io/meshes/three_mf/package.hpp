@@ -1,7 +1,7 @@
 // Package: a 3MF file in memory, as a package of parts (OPC), and its start part.
 //
 // - The names of parts do not distinguish the case of ASCII letters.
-// - The relationships of the package, in the part _rels/.rels, name the start part, which has the model.
+// - The relationships of the package are in the part _rels/.rels. They name the start part, which contains the model.
 //
 // Source: ECMA-376, part 2, Open Packaging Conventions; 3MF core specification 1.3, chapter 2.
 #pragma once
@@ -19,10 +19,10 @@
 
 namespace octopair::io::three_mf {
 
-/// Calls its argument with the pieces of a text, until it returns false.
+/// Passes the pieces of a text to its argument, one after another, until the argument returns false.
 using TextSource = std::function<void(const std::function<bool(std::string_view)>&)>;
 
-/// Returns the name of a part that a path names, without "/" at the begin: decodes %20 and the like, and removes "." and "..".
+/// Returns the name of the part that a path names, without "/" at the beginning. Decodes %20 and the like, and removes "." and "..".
 std::string part_name(std::string_view path);
 
 /// Returns whether two names are those of the same part.
@@ -40,8 +40,8 @@ public:
     std::string find_start();
     /// Returns whether the package names several start parts. Requires: find_start() was called.
     bool has_several_starts() const { return starts_ > 1; }
-    /// Returns the content of a part, unpacked while it is read. `progress`: called with the part of the file that is read; or empty.
-    /// Throws: Error{bad_input} if there is no such part, or several. `place`: what names the part, for messages.
+    /// Returns the content of a part, which is unpacked while it is read. `progress` receives the part of the file that was read; or empty.
+    /// Throws: Error{bad_input} if no part or several parts have this name. `place`: place that refers to the part, for messages.
     TextSource text_of(std::string_view name, std::string_view place, std::function<void(double)> progress = {});
 
 private:
@@ -51,7 +51,7 @@ private:
     std::unordered_map<std::string, std::size_t>
         numbers_;  // name of a part in lower case -> index in the archive, or `several`
     std::size_t starts_ = 0;
-    std::uint64_t packed_read_ = 0;  // bytes of the parts that were read
+    std::uint64_t packed_read_ = 0;  // packed bytes of the parts that were read
 };
 
 }  // namespace octopair::io::three_mf

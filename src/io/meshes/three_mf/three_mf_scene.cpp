@@ -22,7 +22,7 @@ namespace octopair::io::three_mf {
 
 namespace {
 
-/// The objects of a build, and what a user should know about them, each one line "FILE: ...".
+/// The objects of a build, and warnings for the user, each one line "FILE: ...".
 struct Build {
     PlacedMeshes placed;
     std::vector<std::string> warnings;
@@ -35,9 +35,9 @@ constexpr std::uint64_t most_nodes = std::uint64_t(1) << 24;
 /// An item, or a component within it.
 struct BuildNode {
     const Reference* reference;
-    std::size_t part;    // part of the reference
+    std::size_t part;    // part that has the reference
     std::size_t parent;  // index of the node above, plus 1; 0 for an item
-    std::string name;    // path
+    std::string name;    // path of the node's name
     std::string_view label, parent_label;
     BoundedPose pose;
 };
@@ -65,7 +65,7 @@ public:
             waiting.pop_back();
             const ModelObject& object = model_.object(node.reference->target);
             if (node.parent != 0 && object.type == ObjectType::other) {
-                ++others_;  // slicers store modifiers and blockers of supports so; they are not printed
+                ++others_;  // slicers store modifiers and support blockers as such objects, which are not printed
             } else if (object.has_mesh) {
                 add_object(std::move(node), object);
             } else {
@@ -90,7 +90,7 @@ private:
             for (const Reference& reference : references) total = std::min(total + count_of(reference), most_nodes + 1);
             return total;
         };
-        // The start part comes last, because only its objects refer to other parts.
+        // The start part comes last: only its objects refer to other parts, and they need the counts of those parts.
         for (std::size_t part = model_.parts().size(); part-- > 0;) {
             for (const ModelObject& object : model_.parts()[part].objects)
                 counts[part].push_back(1 + total_of(object.components));
@@ -101,7 +101,7 @@ private:
                                 model_.path(), most_nodes));
     }
 
-    /// Adds the nodes below a node, the first one last. `parent`: of the nodes.
+    /// Adds the nodes below a node to `waiting`, the first node last. `parent.parent` becomes the parent of the new nodes.
     void push(const std::vector<Reference>& references, const BuildNode& parent, std::vector<BuildNode>& waiting) {
         std::unordered_map<std::string_view, std::size_t> counts;
         for (const Reference& reference : references) ++counts[label_of(model_.object(reference.target), reference)];
@@ -151,7 +151,7 @@ private:
         }
     }
 
-    /// Throws: Error{bad_input} if an object without a mesh has no components, either.
+    /// Throws: Error{bad_input} if an object has neither a mesh nor components.
     void check_components(const BuildNode& node, const ModelObject& object) {
         note_extension(object);
         if (object.has_components || !object.extension.empty()) return;
@@ -188,7 +188,7 @@ private:
     std::string first_extension_;
 };
 
-/// Takes the meshes of the model. The labels stay in the model.
+/// Moves the meshes out of the model. The labels stay in the model.
 /// Throws: Error{bad_input} that names the part and the line, if the build has an object of type other, or one without a shape;
 /// Error{resource_limit} for more than 2^24 objects; Error{cancelled}.
 Build make_build(Model& model) { return BuildMaker(model).make(); }

@@ -4,7 +4,7 @@
 // - Coordinates are in the unit of the file, which LoadedScene::space names.
 // - Objects with the same mesh share a shape.
 // - An object is a mesh in the world: an item with a mesh, or each mesh among the components of an item.
-// - The order is that of the items, then of the components, in depth first.
+// - The order of objects is that of the items, and within an item that of its components, depth first.
 // - A label is the name of an object; without one, the part number of the item or of the object.
 // - A name is the path of the labels from the item on, joined by "/". With several items, it begins with ROOT. An object without a label
 //   has "#" and its position. If siblings have the same label, "#" and the position follow it.

@@ -19,10 +19,10 @@ namespace {
 constexpr std::string_view end_mark = "PK\x05\x06", end64_mark = "PK\x06\x06", locator_mark = "PK\x06\x07",
                            entry_mark = "PK\x01\x02", local_mark = "PK\x03\x04";
 constexpr std::size_t end_bytes = 22, end64_bytes = 56, locator_bytes = 20, entry_bytes = 46, local_bytes = 30;
-constexpr std::uint32_t in_zip64 = 0xFFFFFFFF;  // the number is in a field of ZIP64
+constexpr std::uint32_t in_zip64 = 0xFFFFFFFF;  // marks a number that is in a field of ZIP64
 constexpr std::size_t piece_bytes = 65536;
 
-/// Returns a number of little endian. Requires: the bytes are there.
+/// Reads a little-endian number. Requires: `bytes` has all bytes of the number.
 template <typename T>
 T number_in(std::string_view bytes, std::size_t offset) {
     std::uint64_t number = 0;
@@ -57,7 +57,7 @@ public:
     Inflater& operator=(const Inflater&) = delete;
     ~Inflater() { inflateEnd(&stream_); }
 
-    /// Continues after at most 1 GiB of further packed bytes.
+    /// Passes at most 1 GiB of further packed bytes to zlib, and removes them from `from`.
     void give(std::span<const std::byte>& from) {
         if (stream_.avail_in > 0) return;
         const std::size_t size = std::min<std::size_t>(from.size(), std::size_t(1) << 30);
@@ -74,7 +74,7 @@ public:
         return to.size() - stream_.avail_out;
     }
     bool ended() const { return result_ == Z_STREAM_END; }
-    /// Returns whether the data are wrong, or end too early.
+    /// Returns whether the packed data are invalid, or end too early.
     bool failed() const { return result_ != Z_OK && result_ != Z_STREAM_END; }
     bool has_input() const { return stream_.avail_in > 0; }
 
@@ -83,7 +83,7 @@ private:
     int result_ = Z_OK;
 };
 
-/// Size and checksum of the bytes that an entry was unpacked to.
+/// Size and checksum of the bytes that were unpacked from an entry.
 class UnpackedCheck {
 public:
     void add(std::string_view piece) {
@@ -100,7 +100,7 @@ private:
 
 }  // namespace
 
-/// Place of the directory.
+/// Place of the directory, which lists all entries, in the archive.
 struct ZipArchive::Directory {
     std::uint64_t entries, size, offset;
 };

@@ -1,6 +1,6 @@
 // ZipArchive: the entries of a ZIP archive in memory, and their content.
 //
-// - The directory at the end of the archive decides which entries exist. It must agree with the header before each entry that is read.
+// - The directory at the end of the archive lists the entries. Each entry that is read must have a header that agrees with the directory.
 // - Entries do not overlap each other or the directory. So an archive cannot unpack the same bytes many times.
 // - An entry is stored or deflated. Its size and its CRC-32 must be those of the directory. It is unpacked piece by piece.
 // - ZIP64 is read. Archives of several parts and encrypted entries are refused.
@@ -27,7 +27,7 @@ struct ZipEntry {
     std::uint32_t crc = 0;
     std::uint64_t packed_size = 0, size = 0;
     std::uint64_t offset = 0;  ///< offset of the header before the content
-    std::uint64_t end = 0;     ///< offset of what follows the content: the next entry, or the directory
+    std::uint64_t end = 0;     ///< offset of the next entry, or of the directory, which follows the content
 };
 
 class ZipArchive {
@@ -38,9 +38,9 @@ public:
 
     const std::vector<ZipEntry>& entries() const { return entries_; }
 
-    /// Gets the next bytes of an entry. Returns false to stop unpacking.
+    /// Receives the next bytes of an entry. Returns false to stop unpacking.
     using Consumer = std::function<bool(std::string_view piece)>;
-    /// Unpacks an entry in pieces of at most 64 KiB, until the consumer stops. Then the rest of the entry is not checked.
+    /// Unpacks an entry in pieces of at most 64 KiB. If the consumer stops, the rest of the entry is not checked.
     /// Throws: Error{bad_input} "FILE: NAME: ..." if the entry is damaged, or packed in another way; Error{resource_limit} if all
     /// unpacked entries are larger than ReadBudget::limit(); Error{cancelled}; what the consumer throws.
     void unpack(const ZipEntry& entry, const Consumer& consumer);
@@ -59,7 +59,7 @@ private:
     std::span<const std::byte> bytes_;
     ReadBudget& budget_;
     std::vector<ZipEntry> entries_;
-    std::uint64_t unpacked_ = 0;  // bytes of all entries
+    std::uint64_t unpacked_ = 0;  // bytes that were unpacked from all entries
 };
 
 }  // namespace octopair::io::three_mf

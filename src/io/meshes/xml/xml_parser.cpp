@@ -18,19 +18,19 @@ namespace {
 constexpr char separator = '\n';  // between a URI and a name
 constexpr std::size_t least_batch = std::size_t(1) << 18, most_batch = std::size_t(1) << 28;
 
-/// Memory for expat on this thread, with a limit.
+/// Functions that allocate memory for the strict parsers of this thread, up to a limit.
 namespace limited_memory {
 
 constexpr std::size_t most_bytes = std::size_t(1) << 30;
-constexpr std::size_t head_bytes = alignof(std::max_align_t);  // before each block: its size
+constexpr std::size_t head_bytes = alignof(std::max_align_t);  // a header before each block has the block's size
 
 thread_local std::size_t used_bytes = 0;
-thread_local bool refused = false;  // memory to the last parser, although the system has some
+thread_local bool refused = false;  // true if the limit refused memory to the last parser
 
 std::size_t& size_of(void* head) { return *static_cast<std::size_t*>(head); }
 void* head_of(void* block) { return static_cast<char*>(block) - head_bytes; }
 
-/// Frees or resizes a block, as std::realloc does. Returns null if `size` bytes are too many.
+/// Allocates or resizes a block, like std::realloc. Returns null if all blocks together would exceed most_bytes.
 void* resize(void* block, std::size_t size) {
     const std::size_t before = block == nullptr ? 0 : size_of(head_of(block));
     if (size > most_bytes || used_bytes - before + size > most_bytes) {
@@ -92,12 +92,12 @@ const char* XmlTag::find(const XmlName& name) const {
     return nullptr;
 }
 
-/// Functions that expat calls. An exception may not pass through expat: they keep it for run(), and stop the parser.
+/// Functions that expat calls. An exception may not pass through expat. So guarded() stores the exception for run(), and stops the parser.
 struct XmlParser::Callbacks {
     template <typename Call>
     static void guarded(void* user, const Call& call) {
         XmlParser& self = *static_cast<XmlParser*>(user);
-        if (self.thrown_) return;  // expat may make some more calls after it was stopped
+        if (self.thrown_) return;  // expat may make some calls after it was stopped
         ++self.events_;
         try {
             call(self);
@@ -154,8 +154,8 @@ void XmlParser::parse(std::string_view piece) {
 
 void XmlParser::finish() { flush(true); }
 
-// expat scans a token that a batch cuts from its begin again. So batches grow as long as no element begins or ends in them, and the whole
-// scan takes linear time.
+// If a batch cuts a token, expat scans the token again from its beginning. So batches grow while no element begins or ends in them. This
+// keeps the time of all scans linear.
 void XmlParser::flush(bool last) {
     events_ = 0;
     run(waiting_, last);

@@ -7,8 +7,8 @@
 //   memory        not limited                            at most 1 GiB for expat
 //   encoding      unknown ones are read as Latin-1       those of expat, such as UTF-8 and UTF-16
 //
-// - An exception of the handler stops the parser, and leaves the call that parses.
-// - The limit of memory is needed because an archive of a few megabytes can unpack to so many names or levels that they fill the memory.
+// - If the handler throws, the parser stops, and the call that parses throws the same exception.
+// - The limit of memory is needed because an archive of a few megabytes can unpack to names or levels that fill the memory.
 #pragma once
 
 #include <cstddef>
@@ -47,14 +47,14 @@ private:
     const char* const* attributes_;
 };
 
-/// Gets what a parser finds, in the order of the text.
+/// Receives the parts of a text that a parser finds, in the order of the text.
 class XmlHandler {
 public:
     virtual ~XmlHandler() = default;
-    /// A prefix stands for a namespace within the element that follows. An empty prefix is that of elements without one.
+    /// In the element that follows, `prefix` stands for the namespace `uri`. An empty prefix applies to elements without a prefix.
     virtual void prefix([[maybe_unused]] std::string_view prefix, [[maybe_unused]] std::string_view uri) {}
     virtual void begin(const XmlTag& tag) = 0;
-    /// Gets a part of the characters between two tags.
+    /// Receives a part of the characters between two tags.
     virtual void text([[maybe_unused]] std::string_view characters) {}
     virtual void end() = 0;
 };
@@ -96,7 +96,7 @@ private:
     std::exception_ptr thrown_;  // exception of the handler
     std::string waiting_;        // text that is not parsed yet
     std::size_t batch_;          // bytes to collect before they are parsed
-    std::uint64_t events_ = 0;   // calls of the handler for the last batch
+    std::uint64_t events_ = 0;   // number of calls of the handler for the last batch
 };
 
 }  // namespace octopair::io

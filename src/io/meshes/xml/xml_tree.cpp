@@ -18,14 +18,14 @@ constexpr std::size_t no_parent = std::size_t(-1), max_depth = 5000;
 
 }  // namespace
 
-/// Fills a tree with what a parser reports.
+/// Adds to a tree the elements that a parser finds.
 class XmlTreeBuilder final : public XmlHandler {
 public:
     /// `encoding`: name of an encoding to use in place of the declared one, or null.
     XmlTreeBuilder(XmlTree& tree, const char* encoding)
         : tree_(tree), parser_(tree.path_, *this, XmlParser::Mode::lenient, encoding) {}
 
-    /// Returns what is wrong with the text, or nothing.
+    /// Parses a text. Returns the error of the text, or nothing if it is well-formed.
     std::optional<Error> parse(std::string_view bytes) {
         try {
             parser_.parse_whole(bytes);
@@ -81,7 +81,7 @@ private:
     XmlParser parser_;
     std::map<std::string, std::uint32_t, std::less<>> numbers_;
     std::vector<std::size_t> open_;
-    bool has_child_ = false;  // the last open element has a child
+    bool has_child_ = false;  // true if the last open element has a child
 };
 
 XmlTree::XmlTree(std::string path, std::string_view bytes) : path_(std::move(path)) {

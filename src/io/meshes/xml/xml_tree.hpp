@@ -1,4 +1,4 @@
-// XmlTree: the elements of an XML text, in memory. XmlWriter: writes such a text.
+// XmlTree: the elements of an XML text, in memory. XmlWriter: writes an XML text.
 //
 // Invariants
 //   Elements are in document order. The descendants of element i are those from i + 1 to its end.
@@ -16,7 +16,7 @@ namespace octopair::io {
 
 class XmlTree;
 
-/// An element of an XmlTree. Requires: the tree lives.
+/// An element of an XmlTree. Requires: the tree outlives the element.
 class XmlElement {
 public:
     XmlElement(const XmlTree& tree, std::size_t index) : tree_(&tree), index_(index) {}
@@ -65,10 +65,10 @@ private:
     friend class XmlTreeBuilder;
 
     struct Element {
-        std::uint32_t name = 0;  // in names_
+        std::uint32_t name = 0;  // index in names_
         std::uint32_t attributes = 0;
         std::size_t line = 0, parent = 0, end = 0;
-        std::size_t first_attribute = 0;  // in attributes_
+        std::size_t first_attribute = 0;  // index in attributes_
         std::size_t text_begin = 0, text_end = 0;
     };
     struct Attribute {
@@ -105,7 +105,7 @@ private:
 
     std::string text_;
     std::vector<std::string> open_;
-    bool in_tag_ = false;  // the tag of the last open element has no end yet
+    bool in_tag_ = false;  // true if the start tag of the last open element has no ">" yet
 };
 
 }  // namespace octopair::io
