@@ -1,9 +1,9 @@
 // CallScope: the calls that the current thread runs, so that a callback cannot wait for the call that it belongs to.
 //
 // Owners    An owner is an object whose calls run one at a time, for example an engine. Each call of an owner has a CallScope.
-// Callbacks A callback that runs on another thread than its call gets a CallbackScope there. So any thread that runs a callback has the
-//           scopes of the callback's call.
-// Cost      Two accesses to a variable of the thread.
+// Callbacks If a callback runs on another thread than its call, it gets a CallbackScope on this thread. So any thread that runs a callback
+//           has the scopes of the callback's call.
+// Cost      Two accesses to a thread-local variable.
 #pragma once
 
 #include "base/private_export.hpp"
@@ -28,10 +28,10 @@ public:
 private:
     const void* owner_;
     const CallScope* outer_;
-    const CallScope* previous_;  // innermost call of this thread before, restored at the end
+    const CallScope* previous_;  // innermost call of this thread before this scope; restored at its end
 };
 
-/// Replaces the calls of this thread by those of a callback's call, until the scope ends.
+/// Replaces the calls of this thread by the call that runs a callback and the calls around it, until the scope ends.
 class OCTOPAIR_PRIVATE_EXPORT CallbackScope {
 public:
     /// `call` must outlive this scope.

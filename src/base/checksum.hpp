@@ -1,5 +1,5 @@
-// Checksum: 64 bits that tell whether two sequences of bytes are equal. Not for secrets: sequences with equal checksums are easy to
-// make.
+// Checksum: 64 bits that show whether two sequences of bytes are equal. Not for security: it is easy to make sequences with equal
+// checksums.
 #pragma once
 
 #include <cstddef>

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int first_descriptor = 3;
 
-/// The child reads its settings here, in the memory of the parent.
+/// Settings of the child. The child reads them in the memory of its parent.
 struct Start {
     const char* path;
     char* const* arguments;
@@ -49,7 +49,7 @@ OCTOPAIR_NOT_SANITIZED void close_from(int first) {
 /// Gives the program its descriptors, and closes all others. Returns false after an error.
 OCTOPAIR_NOT_SANITIZED bool arrange_descriptors(const Start& start) {
     const int behind = first_descriptor + start.descriptor_count;
-    // First copies, above all numbers that the program gets, so that no descriptor is overwritten too early.
+    // First copies all descriptors to numbers above those that the program gets. So no descriptor is overwritten before its copy.
     int copies[ChildProgram::max_descriptors];
     for (int i = 0; i < start.descriptor_count; ++i) {
         copies[i] = ::fcntl(start.descriptors[i], F_DUPFD, behind);

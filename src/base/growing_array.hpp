@@ -1,5 +1,5 @@
-// Arrays that grow. GrowingArray: a vector of plain data in a Buffer, so that a large array lies on huge pages. reserve_more(): makes room
-// in a vector before a change that must not fail half-way.
+// Arrays that grow. GrowingArray: a vector of plain data in a Buffer, so that a large array lies on huge pages. reserve_more(): reserves
+// room in a vector before a change that must not fail half-way.
 //
 // With small pages, random access to tens of megabytes costs as much for address translation as for the memory itself.
 #pragma once

@@ -1,7 +1,7 @@
 // Buffer: an array of plain data that is not initialised and keeps its memory when it shrinks.
 //
-// Large buffers are mapped separately. So their memory returns to the system when they are freed; an allocator would keep it in
-// fragments. They also request huge pages, which saved 4 to 24% of the time of the sort.
+// The system maps each large buffer separately. So freeing a buffer returns its memory to the system; an allocator would keep the memory in
+// fragments. Large buffers also request huge pages, which saved 4 to 24% of the time of the sort.
 //
 // prefetch(): for code that includes no SIMD library.
 #pragma once
@@ -33,8 +33,8 @@ public:
     virtual void free(void* memory, std::size_t bytes) noexcept = 0;
 };
 
-/// Returns the source of this process's memory. Memory that is committed in pieces below 2 MiB uses no huge pages, so that it
-/// takes no more than these pieces.
+/// Returns the source of this process's memory. Memory that is committed in pieces below 2 MiB uses no huge pages, because a huge page
+/// would take more memory than the pieces.
 OCTOPAIR_PRIVATE_EXPORT PageSource& own_pages();
 
 template <typename T>

@@ -1,4 +1,4 @@
-// Which boxes and paddings are valid: the rule for NaN, infinity and inverted boxes.
+// Decides which boxes and paddings are valid: the rule for NaN, infinity and inverted boxes.
 // Start here to change what NaN and infinity do.
 #pragma once
 

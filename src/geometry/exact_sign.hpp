@@ -1,9 +1,9 @@
-// Signs that are exact for all finite float64 coordinates: the side of a line in a projection (line_side()), and comparisons of sums of
-// squared differences (compare_square_sums()). The latter are slow: they are for cases that float64 rounding leaves open.
+// Signs that are exact for all finite float64 coordinates. line_side(): the side of a line in a projection. compare_square_sums(): the
+// order of two sums of squared differences; this function is slow, and is for cases that float64 rounding leaves open.
 //
 // Filter    A sign is first computed in float64. Each operation errs by at most 2^-53 of its result. So the sum errs by at
-//           most a small multiple of 2^-53 of the permanent: the same sum with all terms positive.
-// Underflow A term that underflows errs by less than the smallest number times a factor; filter::underflow is far larger.
+//           most a small multiple of 2^-53 of the permanent, which is the sum with absolute values of all terms.
+// Underflow A term that underflows errs by less than the smallest number times a factor; filter::underflow is far larger than this error.
 // Overflow  An overflow makes the permanent infinite or NaN, so the sign counts as undecided.
 // Exact     A sum beyond the error bound has the right sign. Otherwise the sign is computed again, with integers.
 // Source    Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, section 4.
@@ -50,7 +50,7 @@ using Gaps = std::array<Gap, 3>;
 /// Returns -1, 0 or 1 if the sum of the squares of `a` is less than, equal to or greater than that of `b`.
 int compare_square_sums(const Gaps& a, const Gaps& b);
 
-/// Compares the root of the sum of the squares of `gaps` with the middle between `low` and the next larger float64. The
+/// Compares a root with the middle between `low` and the next larger float64: the root of the sum of the squares of `gaps`. The
 /// successor of the largest float64 counts as 2^1024. Returns -1, 0 or 1 if the root is less than, equal to or greater than the
 /// middle.
 /// Requires: `low` is finite and >= 0.

@@ -36,7 +36,7 @@ inline float finite_float_above(double value) {
     return double(nearest) < value ? next_above(nearest) : nearest;
 }
 
-/// Returns the smallest float64 >= a + b, but infinity of the sum's sign where the sum overflows.
+/// Returns the smallest float64 >= a + b. If the sum overflows, returns infinity with the sign of the sum.
 /// Source: Knuth's two-sum, which gives the rounding error of a sum exactly, since additions never underflow.
 inline double sum_above(double a, double b) {
     const double sum = a + b;

@@ -4,7 +4,7 @@
 //           pairs.
 // Sameness  The numbers come from integers by IEEE addition, multiplication, division and square root only: no functions of the
 //           mathematical library, no contraction. Object i of a static kind depends only on (kind, objects, seed, i).
-// Memory    One batch. A `brownian` scene with several frames also stores positions, 24 bytes per object.
+// Memory    One batch of boxes. A `brownian` scene with several frames also stores positions, 24 bytes per object.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Table of all file formats that octopair knows: who reads them, and what Assimp does to their axes.
+// Table of all file formats that octopair knows: the reader of each format, and the change that Assimp makes to its axes.
 //
 // A new format is one line of format_table.cpp. If its files begin with a mark, content_marks.cpp has a line for the mark, too.
 #pragma once
@@ -9,11 +9,11 @@
 
 namespace octopair::io {
 
-/// Who reads the files of a format.
+/// The reader of the files of a format.
 enum class FormatReader : std::uint8_t {
     octopair,        ///< a reader of octopair
     checked_assimp,  ///< Assimp; octopair compares the result with the file
-    assimp,          ///< Assimp; octopair does not check the result, and a warning says so
+    assimp,          ///< Assimp; octopair does not check the result, and warns about this
     nobody,          ///< files are refused; FileFormat::remedy says what to do
 };
 

@@ -1,4 +1,4 @@
-// json_shape(): one shape of a JSON scene.
+// json_shape(): reads one shape of a JSON scene.
 #include "io/json/json_scene.hpp"
 
 #include <cmath>
@@ -49,7 +49,7 @@ shape::Plane plane(const JsonFields& fields) {
     return plane;
 }
 
-/// Throws: Error{cancelled} now and then after a stop request.
+/// Polls for a stop request once in many elements. Throws: Error{cancelled} soon after a stop request.
 void check_stop(const std::stop_token& stop, std::size_t element) {
     constexpr std::size_t elements_between_checks = 4096;
     if (element % elements_between_checks == 0 && stop.stop_requested()) cancel();
@@ -66,7 +66,7 @@ std::vector<Point3d> points(const JsonFields& fields, std::string_view key, cons
     points.reserve(array.size());
     for (std::size_t i = 0; i < array.size(); ++i) {
         check_stop(stop, i);
-        // Only errors need the place, and a text costs more than a point.
+        // The text of the place is made only after an error, because making it costs more than reading a point.
         points.push_back(
             json_point(array[i], is_point(array[i]) ? std::string() : fmt::format("{}[{}]", fields.place_of(key), i)));
     }

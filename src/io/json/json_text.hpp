@@ -15,7 +15,7 @@ namespace octopair::io {
 nlohmann::json parse_json(std::string_view text, std::string_view file, const std::stop_token& stop = {},
                           int max_levels = 16);
 
-/// Returns text of a file in a form for messages: at most 60 bytes, with '?' for control characters.
+/// Returns a text of a file for use in messages: at most 60 bytes, with '?' for control characters.
 std::string shown_text(std::string_view text);
 
 /// Returns `text` as a JSON string with quotes. Invalid UTF-8 becomes U+FFFD.

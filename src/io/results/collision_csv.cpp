@@ -49,7 +49,7 @@ std::string as_csv(CsvOpen<const CollisionRecord> value) {
     return std::string(value.row.a.open ? "a" : "") + (value.row.b.open ? "b" : "");
 }
 
-/// The text of a field, and where it is, for messages.
+/// The text of a field, and its place in the file for messages.
 struct CsvPlace {
     std::string_view text;
     std::string place;

@@ -1,4 +1,4 @@
-// Rows of collisions as JSON. as_json() returns a value of a column as JSON, or nothing if the row does not know it; read_json()
+// Rows of collisions as JSON. as_json() returns a value of a column as JSON, or nothing if the row lacks the value. read_json()
 // reads such a value.
 #include <type_traits>
 

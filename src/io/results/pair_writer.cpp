@@ -22,7 +22,7 @@ char* put_number(char* at, std::uint32_t number) { return std::to_chars(at, at +
 class NpyWriter final : public PairWriter {
 public:
     NpyWriter(std::string path, bool moving) : path_(std::move(path)), moving_(moving) {
-        if (!moving_) open(path_);  // opened now, so that an unwritable path fails before the search
+        if (!moving_) open(path_);  // opened now, so that a path that cannot be written fails before the search
     }
 
     void begin_frame(std::uint64_t frame) override {

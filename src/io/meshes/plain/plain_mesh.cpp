@@ -18,7 +18,7 @@ class PolygonCutter {
 public:
     PolygonCutter(const PlainMesh& mesh, const std::stop_token& stop) : mesh_(mesh), cutter_(stop) {}
 
-    /// Appends the triangles of a face. Returns false if it crosses itself.
+    /// Appends the triangles of a face. Returns false if the face crosses itself.
     bool cut(std::span<const std::uint32_t> corners, std::vector<std::array<std::uint32_t, 3>>& triangles) {
         if (corners.size() == 3) {
             triangles.push_back({corners[0], corners[1], corners[2]});

@@ -76,7 +76,7 @@ PlyHeader read_ply_header(TextLines& lines) {
             element.count = lines.integer("the number of elements", 0xFFFFFFFF);
         } else if (word == "property") {
             read_property(lines, header);
-        }  // Other lines are comments, or the like.
+        }  // All other lines are comments, or have no meaning for octopair.
     }
 }
 

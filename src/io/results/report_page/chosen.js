@@ -1,4 +1,4 @@
-// The chosen collision: its address, and all that is known about it.
+// The collision that the reader has chosen: its address, and all details that the data have.
 
 // ---- The chosen collision ------------------------------------------------------------------------------------------
 
@@ -11,7 +11,7 @@ function choose(row) {
   showInViewer(row);
   say(row ? `Chosen: ${row.first.label} and ${row.second.label}` : 'No collision is chosen');
 }
-// Chooses a row and brings the table to it. Filters that hide the row are cleared.
+// Chooses a row and shows it in the table. If filters hide the row, clears the filters.
 function chooseAndReveal(row) {
   if (!shown.includes(row)) {
     clearFilters();
@@ -32,14 +32,14 @@ function goToChosen() {
   focusLine(current);
   element('body').children[current].scrollIntoView({block: 'center'});
 }
-// This removes the buttons of the details, so a focus there moves to the table.
+// Clears the choice, which removes the buttons of the details. If one of these has the focus, moves the focus to the table.
 function endChoice() {
   const wasInside = element('details').contains(document.activeElement);
   choose(null);
   if (wasInside) focusLine(current);
 }
 
-// The fragment names the pair by its numbers, for example #clash=12-34. A collision that is gone has no numbers.
+// The fragment of the address names the pair by its numbers, for example #clash=12-34. A collision that is gone has no numbers.
 const fragmentOf = row => row && !isGone(row) ? `#clash=${row.a}-${row.b}` : '';
 function writeFragment() {
   const fragment = fragmentOf(chosen);
@@ -60,7 +60,7 @@ async function copy(text) {
   try { await navigator.clipboard.writeText(text); }
   catch { copyBySelection(text); }
 }
-// Copies where the browser gives a page no access to the clipboard.
+// Copies a text if the browser gives the page no access to the clipboard.
 function copyBySelection(text) {
   const area = make('textarea', text, 'unseen'), focused = document.activeElement;
   document.body.append(area);
@@ -72,7 +72,7 @@ function copyBySelection(text) {
 
 // ---- Details -------------------------------------------------------------------------------------------------------
 
-// An entry has a term, a value and, if a button copies it, the text to copy.
+// An entry of the details has a term and a value. If a button copies the value, the entry also has the text to copy.
 function definitions(entries) {
   const made = make('dl');
   for (const [term, value, copied] of entries) {

@@ -1,6 +1,6 @@
 'use strict';
 // The data: rows (collisions), gone (collisions of an older result), objects, others (boxes of objects without a collision),
-// words (texts that objects refer to by index) and summary. Names are only ever set as text.
+// words (texts that objects refer to by index) and summary. The page sets names only as text, never as HTML.
 
 // ---- Data ----------------------------------------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-// The three drawings.
+// The three drawings of the boxes: from three sides.
 
 // ---- Picture -------------------------------------------------------------------------------------------------------
 
@@ -13,7 +13,7 @@ const views = summary.up === 1 ? [
   {title: 'from the side: y to the right, z up', right: [1, 1], up: [2, 1]},
 ];
 const fewRows = 200, cell = 6, heatColours = 5;  // more rows than `fewRows` are drawn as counts per cell of `cell` pixels
-const maxOutlines = 20000;  // outlines of more boxes cover everything
+const maxOutlines = 20000;  // above this number, outlines of boxes would cover everything
 const objectBoxes = allObjects.map(object => object.box).filter(box => box !== null);
 const allBounds = boundsOf([...others, ...objectBoxes]);
 const stride = Math.ceil((others.length + objectBoxes.length) / maxOutlines);
@@ -29,7 +29,7 @@ function boundsOf(boxes) {
   }
   return bounds;
 }
-// The overlap of the boxes of the chosen pair, with room on each side to see what is around.
+// Returns the overlap of the boxes of the chosen pair, enlarged on each side to show what is around.
 function boundsOfPlace({first, second}) {
   const a = first.box, b = second.box, low = [], high = [];
   for (let i = 0; i < 3; ++i) {
@@ -57,7 +57,7 @@ function makeViews() {
     element('views').append(figure);
   }
 }
-// Sets the functions that map a point to the canvas: the bounds fill it, and both directions have the same scale.
+// Sets the functions that map a point to the canvas. The bounds fill the canvas, and both directions have the same scale.
 function fitView(view, bounds) {
   const {canvas, right: [across, acrossSign], up: [along, alongSign]} = view, edge = 14, dense = devicePixelRatio || 1;
   view.width = canvas.clientWidth;
@@ -132,7 +132,7 @@ function drawChosen(view) {
   drawDot(view, placeOf(chosen), 'hit', 4);
 }
 
-// Returns how many places each cell of a view has, row by row.
+// Returns the number of places in each cell of a view, row by row.
 function countPerCell(view, places) {
   const wide = Math.ceil(view.width / cell), high = Math.ceil(view.height / cell), counts = new Uint32Array(wide * high);
   for (const at of places) {
@@ -162,7 +162,7 @@ function drawScaleBar({context, width, height, scale}) {
   const most = width / 3 / scale, power = 10 ** Math.floor(Math.log10(most));
   const long = [5, 2, 1].find(factor => factor * power <= most) * power, text = length(long);
   context.font = '12px system-ui, sans-serif';
-  context.strokeStyle = colourOf('panel');  // an edge around the letters, so that lines below do not hide them
+  context.strokeStyle = colourOf('panel');  // an edge around the letters, so that lines below do not hide the letters
   context.lineWidth = 3;
   context.strokeText(text, 8, height - 10);
   context.fillStyle = colourOf('text');
@@ -192,7 +192,7 @@ function writeLegend(limits) {
   element('show-label').hidden = !chosen?.first.box;
   element('legend').replaceChildren(...what, entry('other objects', 'var(--box)'), ...pair);
 }
-// Chooses the deepest collision within 5 pixels, or else the nearest within 40.
+// Chooses the deepest collision within 5 pixels; if there is none, the nearest within 40 pixels.
 function chooseNearest(view, x, y) {
   let best = null, least = 40;
   for (const row of shown) {

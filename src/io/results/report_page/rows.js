@@ -1,4 +1,4 @@
-// Which rows the table has, and in which order: columns, sorting, filters, groups.
+// Chooses and orders the rows of the table: columns, sorting, filters, groups.
 
 // ---- Columns and sorting -------------------------------------------------------------------------------------------
 
@@ -16,7 +16,7 @@ const columns = [
 ].filter(({key, style}) => style === 'name' || rows.some(row => key === 'kind' ? row.kind > 0 : row[key] !== null));
 const has = key => columns.some(column => column.key === key);
 
-// The worst first: the deepest, or without depths the nearest.
+// At first, the worst collisions come first: the deepest, or without depths those with the smallest distance.
 let sorting = hasDepths ? 'depth' : has('distance') ? 'distance' : null, falling = sorting === 'depth';
 let ordered = rows;
 
@@ -56,7 +56,7 @@ let shown = rows;
 function readFilter() {
   const choice = id => element(id).value === '' ? null : Number(element(id).value);
   const filter = Object.fromEntries([...selects, 'from', 'to'].map(id => [id, choice(id)]));
-  // The bits of an object's `found` are the words that its text has. At most 30 words fit.
+  // Bit i of an object's `found` says that the object's text contains searched word i. At most 30 words fit.
   const searched = element('search').value.toLowerCase().split(/\s+/).filter(word => word).slice(0, 30);
   filter.all = (1 << searched.length) - 1;
   if (searched.length) markFound(searched);
@@ -87,7 +87,7 @@ function passes({first, second, kind, change, depth}, filter) {
 }
 function clearFilters() {
   for (const id of filterIds) element(id).value = '';
-  // Collisions that are gone are listed at first only if there are no others.
+  // If there are other collisions, those that are gone are hidden at first.
   if (has('change')) element('change').value = present.length ? notGone : everyChange;
 }
 
@@ -115,8 +115,8 @@ function fillFilters() {
 
 // A grouping has a title for the reader, a hint, and these functions:
 // - keys: returns the keys of the groups that a row belongs to;
-// - describe: returns the title of the group of a key, and more text about it;
-// - known: returns true if the data have what this grouping needs.
+// - describe: returns the title of the group of a key, and a longer text about the group;
+// - known: returns true if the data have the details that the grouping needs.
 // A pair of words in any order is one key. The key is a number, because a Map of numbers is fast.
 function pairKey(row, field) {
   const u = row.first[field], v = row.second[field];
@@ -148,7 +148,7 @@ const groupings = {
 let grouping = groupings.none, groups = null;
 const open = new Set(), pageOfGroup = new Map();
 
-// `shown` is sorted, so the groups come in the order of their first, worst rows. Unsorted, the largest group is first.
+// `shown` is sorted. So groups are in the order of their first rows, which are the worst. Without sorting, the largest group is first.
 function makeGroups() {
   const found = new Map();
   for (const row of shown) {

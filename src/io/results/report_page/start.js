@@ -14,7 +14,7 @@ function fillHeader() {
   element('notes').textContent = summary.notes.join(' ');
   element('notes').hidden = summary.notes.length === 0;
 }
-// The deepest collision. If no objects meet, the nearest pair. Null if neither is known.
+// Returns the deepest collision. If no objects meet, returns the nearest pair. Null if no such row exists.
 function worstRow() {
   let worst = null;
   for (const row of present) if (row.depth > 0 && row.depth > (worst?.depth ?? 0)) worst = row;

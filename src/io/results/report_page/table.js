@@ -1,4 +1,4 @@
-// The table: its lines, pages, and use with the keyboard.
+// The table: its lines, its pages, and the keys that control it.
 
 // ---- Table ---------------------------------------------------------------------------------------------------------
 

@@ -1,4 +1,4 @@
-// The viewer, a page within this page, in place of the drawings. The drawings remain for paper.
+// Shows the viewer, a page within this page, in place of the drawings. Prints on paper still have the drawings.
 
 // ---- Viewer --------------------------------------------------------------------------------------------------------
 
