@@ -9,7 +9,6 @@
 // Home      Each object has one home: of the octants with its entries, the octant in which its box begins, which holds the box's
 //           low corner. So the home of a large box may have octants below it.
 // Bounds    In the unit and the coordinates of the boxes. Bounds of neighbours meet exactly, and those of children tile their parent.
-// Bounds    In the unit and the coordinates of the boxes. Bounds of neighbours meet exactly, and those of children tile their parent.
 //           A box is widened by margin / 2 and its padding, and then mapped to cells in float32. If a box ends very close to a face of
 //           an octant, rounding decides on which side of the face the box ends. Very close means within a cell, which is 2^-21 of the
 //           root's side, or within 2^-20 of the box's coordinates.
