@@ -1,4 +1,4 @@
-// octopair generate: writes random scenes to .npy files. Boxes are streamed to the file.
+// octopair generate: writes random scenes to .npy files. Writes the boxes while it makes them, so a large scene needs little memory.
 #include <fmt/format.h>
 
 #include <array>

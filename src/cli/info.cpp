@@ -145,7 +145,7 @@ std::string bounds_text(const InputSet& set) {
                        bounds.max[0], bounds.max[1], bounds.max[2]);
 }
 
-/// A file, its objects, and what was counted before they were prepared.
+/// A file, its objects, and counts of its shapes from before their preparation.
 struct ReadFile {
     InputSet set;
     std::optional<ShapeCounts> counts;

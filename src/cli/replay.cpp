@@ -33,7 +33,7 @@ std::string times_text(std::vector<double> seconds) {
     return fmt::format("median {:.3f} ms, slowest {:.3f} ms", seconds[seconds.size() / 2] * 1e3, seconds.back() * 1e3);
 }
 
-/// Returns a line about an incomplete end of the recording, or nothing.
+/// Returns a line if the recording ends within a step or a call, otherwise an empty text.
 std::string ending_text(const ReplayReport& report) {
     if (report.unfinished) return "ending      within a step; the replay completed this step\n";
     if (report.cut) return "ending      within a call; the replay left this call out\n";

@@ -26,7 +26,7 @@ public:
     /// Sets the word for the value in the help.
     Option type_name(const std::string& word);
     Option description(const std::string& text);
-    /// Leaves the option out of the help.
+    /// Hides the option from the help.
     Option hide();
     /// Sets the environment variable that gives the value if the command line does not.
     Option environment(const std::string& variable);
@@ -47,7 +47,7 @@ private:
 
 /// An option with a value.
 struct GivenOption {
-    std::string name;  ///< such as --margin, or that of a positional argument
+    std::string name;  ///< with dashes, such as --margin; for a positional argument, its name without dashes
     std::vector<std::string> texts;
 };
 
@@ -70,9 +70,10 @@ public:
     /// Sets a function that runs after all options are parsed.
     void callback(std::function<void()> done);
 
-    // Requires for all overloads: `value`, `values`, and what `read` borrows outlive the parsing.
+    // Add an option whose value parse() stores or passes to `read`.
+    // Requires, for all overloads: `value`, `values`, and the objects that `read` borrows exist until parse() returns.
 
-    /// The value must not be empty: a script whose variable is not set would lose the option without a word.
+    /// Refuses an empty value. A script whose variable is not set would pass one, and the option would have no effect.
     Option add_option(const std::string& name, std::string& value, const std::string& description = {});
     Option add_option(const std::string& name, std::vector<std::string>& values, const std::string& description);
     Option add_option(const std::string& name, const ReadText& read, const std::string& description);

@@ -1,8 +1,8 @@
 // Reads options of a subcommand from a file. A line `NAME = VALUE` sets the option --NAME.
 //
-// The form is a part of TOML: a value is a string in quotes without escapes, or a word (TOML would want quotes around some words). Each
-// line is such a line, empty, or a comment after '#'. Anything else is refused: CLI11's reader accepts most files with a slip, and then
-// sets other options than their author meant.
+// The format is a subset of TOML, except that a word needs no quotes. A value is a word, or a string in quotes without escapes. Each line
+// sets an option, is empty, or is a comment after '#'. Any other line is an error. CLI11's own reader is not used: it accepts most
+// files with typing errors, and then sets wrong options.
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
@@ -24,7 +24,8 @@ namespace {
     throw Error(ErrorCode::usage, file + ": " + place + ": " + why);
 }
 
-/// Returns the text of a file. Refuses other data: messages about them would show them, which may be secret or garble the terminal.
+/// Returns the text of a file. Refuses a file that is not text: error messages would print its bytes, which may be secret, or control
+/// the terminal.
 std::string text_of(const std::string& file) {
     constexpr std::size_t max_bytes = 1 << 20;
     std::ifstream in(file, std::ios::binary);
@@ -46,7 +47,7 @@ struct Entry {
     std::string name, value;
 };
 
-/// Thrown for a line in another form.
+/// Thrown for a line with a syntax error.
 struct WrongLine {
     const char* why;
 };
@@ -74,7 +75,7 @@ public:
         skip_blanks();
         const bool in_quotes = rest_.starts_with('"') || rest_.starts_with('\'');
         entry.value = in_quotes ? quoted() : plain();
-        const bool unclear = !in_quotes && rest_.starts_with('#');  // part of the word, or a comment
+        const bool unclear = !in_quotes && rest_.starts_with('#');  // '#' may begin a comment, or belong to the word
         skip_blanks();
         if (unclear || !ends()) throw WrongLine{"a value must be one word, or in quotes"};
         return entry;

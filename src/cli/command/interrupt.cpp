@@ -14,8 +14,8 @@ Interrupt::Interrupt() {
     // A shell starts background processes with SIGINT ignored, and sigwait() may not return for an ignored signal.
     std::signal(SIGINT, SIG_DFL);
     waiter_ = std::thread([this] { wait(); });
-    // Wait until the thread runs. A starting thread allocates, and a child forked at that time would find the allocator of a
-    // sanitizer locked.
+    // Wait until the thread runs. A starting thread allocates memory. If this process forked at that moment, the allocator's lock (of a
+    // sanitizer) would stay locked in the child.
     waits_.wait();
 }
 

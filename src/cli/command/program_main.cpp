@@ -16,10 +16,10 @@ int program_main(const char* program, const Action& run) {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     program_name = program;
-    // Reporting that memory ran out must not need memory.
+    // Use fail(), which allocates no memory: the exception may be std::bad_alloc.
     try {
         const int status = run();
-        // Help, versions and other short texts are only buffered until here.
+        // Short texts, such as the help, are still in the buffer of stdout. Flush it, so that an error of writing gives an exit status.
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) fail_io("standard output", "cannot write", errno);
         return status;
     } catch (const Error& error) {

@@ -56,7 +56,7 @@ int exit_status_of(const DetectRequest& request, const DetectReport& report) {
     return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
 }
 
-/// Detects on the processes of a group; its first rank says what came of it.
+/// Runs the search on the processes of a group. Its first rank writes the outcome.
 DetectReport detect_and_report(const DetectRequest& request, SearchGroup& searchers, const std::stop_token& stop) {
     Group& group = searchers.processes();
     std::optional<Outcome> outcome;
@@ -71,7 +71,7 @@ DetectReport detect_and_report(const DetectRequest& request, SearchGroup& search
 }
 
 #ifdef OCTOPAIR_WITH_MPI
-/// Finds events on rank 0, with an engine that the other ranks follow. Returns the exit status.
+/// Finds events with the MPI engine. Only rank 0 calls the engine; the other ranks execute its calls. Returns the exit status.
 int find_events_on_ranks(const DetectRequest& request, Cluster& cluster, const std::stop_token& stop) {
     LeadingOptions options;
     options.threads = describe_engine(request.engine).threads;

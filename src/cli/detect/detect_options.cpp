@@ -136,7 +136,8 @@ std::vector<FileOption> all_input_files(const DetectRequest& request) {
     return files;
 }
 
-/// Ranks cannot share a stream. Other streams are read here, before signals are blocked.
+/// Refuses streams (such as pipes) as inputs of ranks, which cannot share a stream. Otherwise opens the streams now, before signals
+/// are blocked.
 void check_streams(const DetectRequest& request) {
     for (const auto& [option, path] : input_files(request)) {
         if (path.empty() || !io::is_stream(path)) continue;
@@ -160,7 +161,7 @@ void add_detect_options(Command& command, DetectRequest& request) {
 void check_detect_options(DetectRequest& request) {
     check_engine_choice(request.engine);
     check_streams(request);
-    if (request.output == "-") request.output.clear();  // CSV on standard output, which is not collected first
+    if (request.output == "-") request.output.clear();  // empty: CSV on standard output
     if (!request.output.empty()) (void)io::result_format(request.output);
     if (request.events) check_event_options(request);
     check_index_type(request);

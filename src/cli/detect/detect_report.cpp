@@ -131,7 +131,7 @@ std::string verified_text(const DetectReport& report) {
     return text + '\n';
 }
 
-/// Returns the number of pairs that filters dropped although they may count.
+/// Returns the number of pairs that filters dropped although the objects may collide: the filters could not decide.
 std::uint64_t undecided_pairs(const DetectReport& report) {
     std::uint64_t pairs = 0;
     for (const FilterCounts& filter : report.filters) pairs += filter.undecided;

@@ -1,4 +1,4 @@
-// DetectReport: what came of a run of `octopair detect`, with its texts: a summary for people, and statistics in JSON.
+// DetectReport: counts, times and warnings of a run of `octopair detect`. Also makes the summary for people and the statistics in JSON.
 // Start here to change the summary and the statistics of detect.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace octopair::cli {
 /// writing.
 struct DetectSeconds {
     double total = 0, read = 0;
-    double prepare = 0;  ///< of shapes and filters, before the first search
+    double prepare = 0;  ///< preparing shapes and filters, before the first search
     double detect = 0, filter = 0, write = 0;
     double verify = 0;  ///< 0 without --verify
 };
@@ -38,16 +38,16 @@ struct DetectReport {
     bool truncated = false;
     bool verified = false;              ///< true if the pairs of boxes of each frame so far were checked
     bool collisions_verified = false;   ///< true if the collisions were checked by certificates, too
-    std::string not_checked;            ///< for users: what the check of at least one frame left out
+    std::string not_checked;            ///< text for users: properties that --verify did not check in some frame
     std::uint64_t candidates = 0;       ///< pairs of boxes that the search found before filters
-    std::vector<FilterCounts> filters;  ///< of all frames
+    std::vector<FilterCounts> filters;  ///< counts of each filter, summed over all frames
     std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
-    std::optional<double> tolerance;                             ///< of the exact stages
-    bool tolerance_is_precision = false;                         ///< the tolerance is that of float32
-    std::uint64_t open_objects = 0;                              ///< objects whose geometry is not closed
-    std::vector<std::string> first_open;                         ///< names of the first of them
-    std::vector<std::string> warnings;                           ///< about the inputs, after input_warnings()
-    std::optional<io::ChangeCounts> changes;                     ///< nothing without --baseline
+    std::optional<double> tolerance;                             ///< tolerance of the exact stages, as a length
+    bool tolerance_is_precision = false;      ///< true: the tolerance is the error of rounding to float32
+    std::uint64_t open_objects = 0;           ///< objects whose geometry is not closed
+    std::vector<std::string> first_open;      ///< names of the first open objects
+    std::vector<std::string> warnings;        ///< results of input_warnings()
+    std::optional<io::ChangeCounts> changes;  ///< nothing without --baseline
     std::optional<EventCounts> events;  ///< nothing without --events; with it, `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;

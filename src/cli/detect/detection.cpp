@@ -41,12 +41,12 @@ public:
             group_.together([&] { read(); });
             searchers_.compare_inputs(run_);
             search_ = searchers_.make_search(run_);
-            if (report_.frames > 1) refuse_invalid_boxes();  // before anything of the first frames is written
+            if (report_.frames > 1) refuse_invalid_boxes();  // before the first frames are written
             try {
                 search_frames();
             } catch (const Error& error) {
                 if (error.code() == ErrorCode::bad_input) refuse_invalid_boxes();
-                // If boxes changed, an engine or a check may report a contradiction. The change is then the reason.
+                // If an input file changed during the search, an engine or a check may report a contradiction. Report the change instead.
                 if (error.code() == ErrorCode::engine_failed && group_.ranks() == 1) run_.check_inputs();
                 throw;
             }
@@ -104,7 +104,7 @@ private:
         search_->finish();
     }
 
-    /// Repeats an engine's error about a box with the name of its file.
+    /// Throws bad_input with the file and the object of the first invalid box of all ranks. Does nothing if all boxes are valid.
     void refuse_invalid_boxes() {
         group_.together([&] {
             std::uint64_t before = 0;

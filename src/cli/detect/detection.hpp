@@ -30,13 +30,13 @@ struct DetectRequest {
     bool count_only = false;
     bool fail_on_collision = false;
     bool events = false;
-    bool verify = false;  ///< the pairs of boxes, by a second algorithm, and collisions by certificates
+    bool verify = false;  ///< true: check pairs of boxes by a second algorithm, and collisions by certificates
     PipelineRequest pipeline;
-    bool wide_indices = false;  ///< uint64 in .npy files
+    bool wide_indices = false;  ///< true: write indices as uint64 into .npy files
     EngineChoice engine;
     std::string stats;  ///< a file, or empty
     bool quiet = false;
-    std::vector<GivenOption> given;  ///< the same options as texts, to compare those of ranks
+    std::vector<GivenOption> given;  ///< all given options as texts; the ranks compare them with each other
 };
 
 /// Finds the pairs of a request, on the processes of a group, and writes them.

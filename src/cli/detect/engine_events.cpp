@@ -32,7 +32,7 @@ private:
     std::size_t at_ = 0;
 };
 
-/// The boxes of a set in the frame that was read last, in memory of the engine.
+/// The boxes of a set, in memory of the engine. read() replaces them by the boxes of another frame.
 template <typename Real>
 class FrameBoxes {
 public:

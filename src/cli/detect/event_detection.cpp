@@ -84,8 +84,8 @@ private:
         timed(report_.seconds.write, [&] { writer_->finish(); });
     }
 
-    /// Reads all frames once to find invalid input. Needed only for standard output, which cannot be taken back; a file appears
-    /// whole or not at all.
+    /// Reads all frames once, so that invalid input is found before the first row is written. Only standard output needs this: an
+    /// output file is removed after an error.
     void check_frames(EventSource& source) {
         if (!request_.output.empty() || report_.frames < 2) return;
         timed(report_.seconds.read, [&] {
@@ -113,7 +113,7 @@ private:
         report_.events->began += write(frame, io::Event::begin, events.began);
     }
 
-    /// Writes rows up to the limit. Returns the number of rows written.
+    /// Writes one row per pair, until the limit of --limit is reached. Returns the number of rows written.
     std::uint64_t write(std::uint64_t frame, io::Event event, std::span<const Pair> pairs) {
         if (request_.limit) {
             const std::uint64_t left = *request_.limit - rows_;

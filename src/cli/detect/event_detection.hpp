@@ -31,8 +31,8 @@ struct RankedEngine {
     unsigned ranks;
 };
 
-/// Reads the inputs, finds the events, and writes the result. The caller writes the statistics. `ranked`: finds the pairs, if it
-/// has an engine; otherwise an engine is made as the request says. Throws: Error.
+/// Reads the inputs, finds the events, and writes the result. The caller writes the statistics. The engine of `ranked` finds the pairs;
+/// if that engine is null, the function makes the engine of the request. Throws: Error.
 DetectReport detect_events(const DetectRequest& request, RankedEngine ranked, const std::stop_token& stop);
 
 /// Sets of objects of a search. Requires: they outlive the event source.
@@ -42,7 +42,7 @@ struct FrameSets {
     const Paddings& paddings;
 };
 
-/// Events of a frame, ascending. In a join, b is a number within the second set.
+/// Events of a frame, ascending. In a join, `b` of a pair is the index within the second set.
 struct FrameEvents {
     std::span<const Pair> ended, began;  ///< valid until the next frame
     std::uint64_t pairs = 0;             ///< number of pairs in this frame
@@ -58,7 +58,7 @@ public:
     virtual FrameEvents find(const std::stop_token& stop) = 0;
 };
 
-/// Real must be double if one of the sets is wide.
+/// Makes the event source. Requires: Real is double if one of the sets is wide.
 template <typename Real>
 std::unique_ptr<EventSource> make_scene_events(const FrameSets& sets, const DetectRequest& request);
 template <typename Real>

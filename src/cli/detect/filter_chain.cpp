@@ -58,7 +58,7 @@ private:
     bool join() const { return sets_.second != nullptr; }
     static Names names(const InputSet& set) { return set.scene.names; }
 
-    // Requires a stage beyond Stage::pairs: then all objects have shapes.
+    // Adds the filter for groups and masks of scene files. Requires: the stage is not Stage::pairs, so all objects have shapes.
     void add_groups() {
         ShapedSet& first = *sets_.first.shaped;
         ShapedSet* const second = join() ? sets_.second->shaped.get() : nullptr;
@@ -67,7 +67,7 @@ private:
                                      second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
     }
 
-    // In a join, the objects of a pair are in different files and cannot have the same parent.
+    // Adds the filter for --same-parent. Not for a join: the objects of a pair are then in different files, and have different parents.
     void add_parents() {
         if (!join() && sets_.first.shaped != nullptr) {
             add_filter(make_parent_filter(sets_.first.shaped->parents()));
@@ -114,7 +114,7 @@ private:
                 }};
     }
 
-    /// Throws: Error{usage, bad_input} if no object has one of the details that the patterns need.
+    /// Throws: Error{usage, bad_input} if the patterns need names, or a detail such as the type, that no object has.
     void check_columns(const ColumnPatterns& patterns, const std::string& place) const {
         for (std::size_t column = 0; column < patterns.size(); ++column) {
             if (!patterns[column]) continue;
@@ -195,7 +195,8 @@ public:
         if (!has_exclusions_) return excluded;
         PairList all;
         engine.find_pairs(input_of(frame), all, {.margin = margin_}, stop_);
-        // The filters keep the order of the pairs. Those between two that they keep are excluded.
+        // The filters keep the order of the pairs. So walk through `all` and the kept pairs together: pairs of `all` between two kept pairs
+        // are excluded.
         auto chunk = all.chunks().begin();
         std::size_t next = 0;
         const auto exclude_up_to = [&](std::optional<Pair> kept) {

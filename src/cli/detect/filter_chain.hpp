@@ -19,14 +19,14 @@ public:
     /// Finds the pairs of a frame, filters them, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                                 const Options& options) = 0;
-    /// Filters pairs that were found before, and passes the result to `sink`. With an empty sink, it counts only.
+    /// Filters `pairs`, which an engine has found for the frame, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary filter(const PairList& pairs, const CollisionSink& sink, const Options& options) = 0;
     /// Finds the pairs of a frame that exclusion rules leave out, ascending. Requires: the request has --verify.
     /// Memory: 8 bytes per pair of boxes, if there are rules.
     virtual std::vector<Pair> excluded(Engine& engine, std::uint64_t frame) = 0;
 };
 
-/// Makes the filters. Borrows from the sets.
+/// Makes the filters of the request. Borrows the shapes and names of the sets.
 /// Throws: Error for invalid exclusion rules, and for objects that do not fit their shapes.
 std::unique_ptr<FilterChain> make_filter_chain(const DetectRequest& request, const SetPair& sets,
                                                const std::stop_token& stop);

@@ -1,6 +1,6 @@
 // SearchGroup: the processes that search together, and FrameSearch: how they find and write the pairs of one frame after another.
-// There are two of each: one process with any engine streams its pairs (stream_search.cpp); ranks of MPI read slices and join their
-// pieces (rank_group.hpp).
+// Each has two implementations: one process with any engine, which streams its pairs (stream_search.cpp), and ranks of MPI, which read
+// slices of the inputs and join their pieces of the result (rank_group.hpp, rank_search.cpp).
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ public:
     virtual ~FrameSearch() = default;
     /// Makes filters and output files. To be called once, before search().
     virtual void prepare() = 0;
-    /// Finds the pairs of a frame, writes them unless they are only counted, and adds to the report. Frames come in order.
+    /// Finds and writes the pairs of a frame, or only counts them, and updates the report. Requires: frames are passed in ascending order.
     virtual void search(std::uint64_t frame) = 0;
     /// Completes the output files. To be called once, after the last frame.
     virtual void finish() = 0;
@@ -53,7 +53,7 @@ public:
     /// Throws: Error{resource_limit} for more objects than the requested output, filters or verification can number.
     /// Requires: called within Group::together().
     virtual void check_objects(DetectRun& run) = 0;
-    /// Collective. Throws: Error{usage} if the processes have read other objects, so that their pairs would belong to no scene.
+    /// Collective. Compares the inputs of all ranks. Throws: Error{usage} if some ranks have read different files or objects.
     virtual void compare_inputs(DetectRun& run) = 0;
     /// Makes the search of this process. Collective, as are all functions of the search. Borrows the run. Requires: the inputs were read.
     /// Throws: what the makers of engines throw.

@@ -37,7 +37,8 @@ struct ByteRange {
     std::uint64_t begin, size;
 };
 
-/// Returns the parts of `bytes` bytes that are compared: all, or 1,024 blocks of which the first and last are at the ends.
+/// Returns the parts of `bytes` bytes of data that the ranks compare. `all`: everything. Otherwise, of large data, only 1,024 evenly
+/// spread blocks with the first and the last byte.
 std::vector<ByteRange> compared_parts(std::uint64_t bytes, bool all) {
     constexpr std::uint64_t blocks = 1024, block = 4096;
     std::vector<ByteRange> parts;
@@ -93,9 +94,9 @@ void add_set(Facts& facts, const std::string& option, const InputSet& set, const
     }
 }
 
-/// Facts about the inputs: objects, frames and precision of each set, and size and content of each file. The content is that of 1,024
-/// blocks of the file, evenly spread; of all of it with --verify. Boxes that a scene's shapes have count as content, too, because they
-/// may depend on files that it names.
+/// Returns facts about the inputs: objects, frames and precision of each set, and size and hash of each file. The hash is of 1,024
+/// evenly spread blocks; with --verify, of the whole file. The boxes of shapes are hashed, too, because a scene file may name mesh
+/// files that differ between ranks.
 /// Requires: the inputs were read. Throws: Error{io_failed, bad_input, cancelled}.
 Facts input_facts(const DetectRun& run) {
     const DetectRequest& request = run.request;

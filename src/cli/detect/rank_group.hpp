@@ -9,8 +9,8 @@
 
 namespace octopair::cli {
 
-/// Returns facts about the options, without --threads and --quiet, which may differ. Paths of inputs may differ, too, because hosts may have
-/// their files in different folders.
+/// Returns the options that must be equal on all ranks. --threads, --quiet and the paths of inputs may differ: hosts may have their
+/// files in different folders.
 Facts option_facts(const DetectRequest& request);
 
 /// Borrows `cluster`.
@@ -21,7 +21,8 @@ std::unique_ptr<SearchGroup> ranks_of(Cluster& cluster);
 /// Returns whether indices need more bits than a Pair has, or if the request asks for 64 bits.
 bool has_wide_indices(const DetectRun& run);
 
-/// Returns whether every rank needs all objects. Filters and verification look at any object, and boxes of shapes may depend on all.
+/// Returns whether every rank must read all objects instead of its slice. Filters and verification may need any object, and the boxes
+/// of some shapes (planes) depend on all objects.
 bool needs_whole_inputs(const DetectRequest& request);
 
 /// Returns the slice of each set that this rank gives to the engine.

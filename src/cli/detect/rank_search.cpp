@@ -24,7 +24,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// Returns the same objects, numbered from rank to rank.
+/// Returns the objects of `input` without explicit indices: the engine numbers them consecutively from rank to rank.
 IndexedInput unindexed(const Input& input) {
     std::optional<IndexedObjects> second;
     if (input.second) second = {*input.second, {}};
@@ -74,7 +74,7 @@ PipelineSummary RankFilters::run(const PairList& pairs, const Options& options, 
     {
         const Timed timed(seconds);  // includes waiting for the slowest rank
         const CollisionSink keep = [&](const Batch& batch) { kept->add(batch.pairs(), batch.findings()); };
-        // Each rank may stop at the limit by itself: the piece of one rank has no more collisions than the whole result.
+        // Apply the limit to each rank's piece first: no rank needs to keep more collisions than the whole result may have.
         cluster_.together(
             [&] { summary = filters_->filter(pairs, kept != nullptr ? keep : CollisionSink(), options); });
         const std::uint64_t own = join(summary, options);
@@ -183,7 +183,7 @@ private:
         output_->write(frame, kept);
     }
 #else
-    void filter(std::uint64_t) {}  // a program without filters refuses the options that need them
+    void filter(std::uint64_t) {}  // a build without the pipeline refuses the options that need filters
 #endif
 
     /// Finds this rank's piece of a frame's pairs. Without output and filters it only counts them.
@@ -200,8 +200,8 @@ private:
         const Input input(own_objects(run_.inputs.first, frame),
                           run_.join() ? std::optional(own_objects(run_.inputs.second, frame)) : std::nullopt);
         Options options = run_.call_options(frame);
-        options.verify = false;                                // the engine has slices; verify() has all objects
-        if (has_filters(run_.request)) options.limit.reset();  // the limit is one of collisions
+        options.verify = false;                                // the engine has a slice; verify() checks all objects
+        if (has_filters(run_.request)) options.limit.reset();  // --limit limits the collisions, not the pairs of boxes
         Summary summary;
         cluster_.joint([&] {
             if (has_wide_indices(run_)) {
@@ -220,7 +220,7 @@ private:
         return needs_whole_inputs(run_.request) ? set.frame_slice(frame, own_slice(cluster_)) : set.frame(frame);
     }
 
-    /// The first rank checks the pairs of all ranks, or their number, on all objects.
+    /// Collects the pairs of all ranks (or their number) on the first rank, which checks them against all objects.
     void verify(std::uint64_t frame, Summary& summary) {
         const FloatingPointScope scope;
         const Objects first = run_.inputs.first.frame(frame), second = run_.inputs.second.frame(frame);
@@ -237,7 +237,7 @@ private:
             try {
                 summary.verification = verifier.finish({summary.pairs, summary.truncated});
             } catch (const Error&) {
-                run_.check_inputs();  // if boxes changed, this is the reason
+                run_.check_inputs();  // if an input file changed, reports the change instead
                 throw;
             }
         });
@@ -248,7 +248,7 @@ private:
     std::unique_ptr<Engine> engine_;
     PairList piece_;
     std::vector<Pair64> wide_piece_;
-    std::unique_ptr<PieceOutput> output_;  // none: pairs are only counted
+    std::unique_ptr<PieceOutput> output_;  // null: pairs are only counted
 #ifdef OCTOPAIR_WITH_PIPELINE
     std::optional<RankFilters> filters_;
 #endif

@@ -1,4 +1,4 @@
-// Scene events: a scene, local or on a server, finds the events. It gets only the boxes that differ from the frame before.
+// Scene events: a Scene, local or on a server, finds the events. For each frame, the scene gets only the boxes that have changed.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -42,7 +42,7 @@ public:
             while (end < ids_.size() && differs(end)) ++end;
             if (end == begin) continue;
             scene.move(std::span(ids_).subspan(begin, end - begin), now_.span().subspan(begin, end - begin));
-            begin = end;  // box `end` does not differ, so the loop may skip it
+            begin = end;  // box `end` has not changed, so the loop's increment may skip it
         }
     }
 
@@ -80,7 +80,7 @@ public:
 private:
     void add() {
         if (!against_) return inputs_.add(scene_, paddings_.inputs(), {});
-        // With these groups and masks, only objects of different sets form pairs.
+        // These groups and masks permit only pairs of an object of the inputs with an object of the second set.
         inputs_.add(scene_, paddings_.inputs(), std::array{Traits{.groups = 1, .mask = 2}});
         against_->add(scene_, paddings_.against(), std::array{Traits{.groups = 2, .mask = 1}});
     }

@@ -25,7 +25,7 @@ namespace {
 /// Checks the collisions of one frame by certificates (--verify with an exact stage).
 class CollisionCheck {
 public:
-    /// Borrows all but the token.
+    /// Borrows the request and the sets.
     CollisionCheck(const DetectRequest& request, const SetPair& sets, std::uint64_t frame, std::stop_token stop);
     CollisionCheck(const CollisionCheck&) = delete;
     CollisionCheck& operator=(const CollisionCheck&) = delete;
@@ -140,7 +140,7 @@ private:
     }
 #else
     void find_collisions(std::uint64_t, const Options&) {
-    }  // a program without filters refuses the options that need them
+    }  // a build without the pipeline refuses the options that need filters
 #endif
 
     PairSink pair_sink() {
@@ -155,8 +155,8 @@ private:
 
     DetectRun& run_;
     std::unique_ptr<Engine> engine_;
-    std::unique_ptr<FilterChain> filters_;  // none: pairs as they are
-    std::unique_ptr<FoundWriter> writer_;   // none: pairs are only counted
+    std::unique_ptr<FilterChain> filters_;  // null: all pairs are written, without filters
+    std::unique_ptr<FoundWriter> writer_;   // null: pairs are only counted
 };
 
 class OneProcess final : public SearchGroup {

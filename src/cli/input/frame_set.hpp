@@ -1,7 +1,7 @@
 // FrameSet: the input files of the command line as one set of objects, read frame by frame.
 //
-// - Of a moving scene, at most one frame is in memory.
-// - Objects have the same numbers, and errors are the same, as for an InputSet.
+// - At most one frame of a moving scene is in memory.
+// - Objects have the numbers that InputSet gives them, and reading throws the errors that InputSet throws.
 #pragma once
 
 #include <optional>

@@ -86,7 +86,7 @@ public:
     io::LoadedScene read(const io::ObjectRows& rows, const std::stop_token& stop) {
         if (npy_) return npy_->read(rows, stop);
         io::LoadedScene part = std::move(whole_);
-        part.details = {};  // only whole sets have names and details of all objects
+        part.details = {};  // a slice has no details of objects
         const std::uint64_t objects = std::exchange(part.objects, rows.end - rows.begin);
         std::visit(
             [&](auto& boxes) {
@@ -106,7 +106,8 @@ private:
     io::LoadedScene whole_;
 };
 
-/// Returns for each file, and for the end, the bytes of the files before it, and 1. Files without a known size have none.
+/// Returns, for the progress, the start of each file in the sequence of all files: 1 + the bytes of the files before. The last element is
+/// the end. A file of unknown size counts as 0 bytes.
 std::vector<double> bytes_before(const std::vector<std::string>& paths) {
     std::vector<double> before = {1};
     for (const std::string& path : paths) {

@@ -37,7 +37,7 @@ private:
 struct InputSet {
     io::LoadedScene scene;
     std::shared_ptr<ShapedSet> shaped;  ///< prepared shapes, after make_shaped(); null in a build without the pipeline
-    bool moves_meanwhile = false;       ///< true if objects have end poses, at time 1
+    bool moves_meanwhile = false;       ///< true if objects move to end poses between time 0 and time 1
     std::vector<Part> parts;
     bool mixed_axes = false;               ///< true if the formats of the files have different axes up
     std::uint64_t begin = 0;               ///< for a slice, the number of its first object

@@ -105,7 +105,7 @@ void limit_memory([[maybe_unused]] const std::string& path) {
 #ifndef OCTOPAIR_SANITIZED
     constexpr rlim_t base = rlim_t(4) << 30, factor = 64;
     const std::uintmax_t size = bytes_to_read(path);
-    if (size > std::numeric_limits<rlim_t>::max() / factor / 2) return;  // no such file: reading it gives the error
+    if (size > std::numeric_limits<rlim_t>::max() / factor / 2) return;  // no such file; the caller gets an error later
     rlimit limit{};
     ::getrlimit(RLIMIT_AS, &limit);
     limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, base + factor * size);
@@ -113,7 +113,7 @@ void limit_memory([[maybe_unused]] const std::string& path) {
 #endif
 }
 
-/// Returns what to say of a file whose importer crashed, and what to do.
+/// Returns the error message for a file whose importer crashed, with advice for the user.
 std::string crash_text([[maybe_unused]] const std::string& path, const std::string& cause) {
     std::string remedy = "export the model as glTF, OBJ, STL or PLY from the program that wrote it";
 #ifdef OCTOPAIR_WITH_MESHES
@@ -126,7 +126,7 @@ std::string crash_text([[maybe_unused]] const std::string& path, const std::stri
 
 [[noreturn]] void run_child(pid_t parent, int pipe, const std::string& path, const io::SceneContent& content) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) std::_Exit(0);  // it ended before
+    if (::getppid() != parent) std::_Exit(0);  // the parent has ended already
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
     limit_memory(path);

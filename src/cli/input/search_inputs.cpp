@@ -71,7 +71,7 @@ std::string name_of(const InputSet& set) {
 
 /// Returns a warning if the coordinates of a set are coarse, or an empty text.
 std::string coarseness_of(const DetectRequest& request, const InputSet& set) {
-    constexpr double fine = 1e-6;  // of the size of the scene
+    constexpr double fine = 1e-6;  // maximum step of coordinates that are not coarse, as a fraction of the scene's size
     const double largest = set.scene.largest_rounded;
     if (!(largest > 0) || !std::isfinite(largest)) return {};
     const double step = float32_step(largest), size = size_of(set);

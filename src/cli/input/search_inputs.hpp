@@ -13,7 +13,7 @@
 
 namespace octopair::cli {
 
-/// Returns the frames of the result. A set that does not move fits any number of frames.
+/// Returns the number of frames of the result: that of the set that moves. A set that does not move is the same in each frame.
 /// Throws: Error{bad_input} if both sets move and have different numbers of frames.
 io::FrameCount joint_frames(const io::FrameCount& inputs, const io::FrameCount& against, const DetectRequest& request);
 
@@ -56,9 +56,9 @@ struct WholeInputs {
     void read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop);
 };
 
-/// Returns the warnings about the inputs, each one line: those of their readers, inputs without objects, coarse coordinates, and different
-/// axes. Coordinates are coarse if they were rounded to float32 in steps that are large
-/// against the scene or the tolerance. Requires: the sets are whole and have boxes.
+/// Returns warnings, each one line: warnings of the readers, and about inputs without objects, coarse coordinates and different axes up.
+/// Coordinates are coarse if the steps of float32, to which they were rounded, are large compared with the scene or the tolerance.
+/// Requires: the sets are whole and have boxes.
 std::vector<std::string> input_warnings(const DetectRequest& request, const SetPair& sets);
 
 /// Refuses files without objects: with --fail-on-collision, a check of nothing must not pass. Throws: Error{bad_input} that names the file.

@@ -71,7 +71,7 @@ GroupMasks ShapedSet::group_masks() {
 
 namespace {
 
-/// Runs `call`. Puts the file before the message of an error if the set has only one file.
+/// Runs `call`. If it throws an Error and the set has only one file, puts the name of the file before the message.
 template <typename Call>
 void with_file(const InputSet& set, const Call& call) {
     try {

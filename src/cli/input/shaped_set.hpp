@@ -23,7 +23,7 @@ public:
     ShapedSet(const ShapedSet&) = delete;
     ShapedSet& operator=(const ShapedSet&) = delete;
 
-    // Results borrow from this set.
+    // The returned spans and references point into this object.
 
     ShapedObjects objects(std::span<const double> padding = {}) const;
     /// Returns the paddings that the files give; empty if they give none.

@@ -28,14 +28,14 @@ private:
     std::unique_ptr<io::PairWriter> writer_;
 };
 
-/// Collisions, into any number of files at once. Sets with shapes have no frames.
+/// Writes collisions to several outputs at once. Collisions exist only for sets with shapes, which have no frames.
 class Collisions final : public FoundWriter {
 public:
     Collisions(const io::CollisionNames& names, std::optional<io::Baseline> baseline)
         : names_(names), baseline_(std::move(baseline)) {}
 
     void add(std::unique_ptr<io::CollisionWriter> writer) { writers_.push_back(std::move(writer)); }
-    /// .npy holds pairs alone.
+    /// Adds an .npy file, which gets only the pairs of the collisions.
     void add(std::unique_ptr<io::PairWriter> pairs) { pairs_ = std::move(pairs); }
 
     void begin_frame(std::uint64_t frame) override {

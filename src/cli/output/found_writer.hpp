@@ -19,7 +19,7 @@ class FoundWriter {
 public:
     virtual ~FoundWriter() = default;
     virtual void begin_frame(std::uint64_t frame) = 0;
-    /// Requires: `findings` has one element per pair, or is empty.
+    /// Writes pairs of the current frame, with their findings. Requires: `findings` has one element per pair, or is empty.
     virtual void write(std::span<const Pair> pairs, std::span<const Finding> findings) = 0;
     virtual void end_frame() = 0;
     virtual void finish() = 0;
@@ -40,7 +40,8 @@ struct FoundIn {
 std::unique_ptr<FoundWriter> make_found_writer(const DetectRequest& request, const FoundIn& sets,
                                                const std::stop_token& stop);
 
-/// Makes the HTML report of --report (report_page.cpp). It has no times: the same result has the same page. Borrows the request and the sets.
+/// Makes the HTML report of --report (report_page.cpp). The report has no measured times, so equal results give equal bytes. Borrows the
+/// request and the sets.
 std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
                                                  const io::CollisionForm& form);
 

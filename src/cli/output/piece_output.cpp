@@ -19,12 +19,12 @@ namespace octopair::cli {
 
 namespace {
 
-/// Every rank writes its piece to where it belongs in a file of the first rank's, which the ranks' hosts must share.
+/// The first rank creates an .npy file, and every rank writes its piece at its place in this file. So all hosts must share the folder.
 class SharedNpy final : public PieceOutput {
 public:
     SharedNpy(Cluster& cluster, std::string path, bool moving)
         : cluster_(cluster), path_(std::move(path)), moving_(moving) {
-        if (!moving_) open(path_);  // at once: what cannot be written is known before the work
+        if (!moving_) open(path_);  // so that an unwritable path fails before the search
     }
 
     void write(std::uint64_t frame, const PairList& piece) override {
@@ -33,7 +33,7 @@ public:
     void write(std::uint64_t frame, std::span<const Pair64> piece) override {
         write_piece(frame, io::NpyType::uint64, piece.size(), std::span<const std::span<const Pair64>>(&piece, 1));
     }
-    void write(std::uint64_t, const CollisionPiece&) override {}  // collisions go to the first rank
+    void write(std::uint64_t, const CollisionPiece&) override {}  // never called: RelayedOutput writes collisions
     void finish() override {}
 
 private:
@@ -77,14 +77,14 @@ private:
     Cluster& cluster_;
     std::string path_;
     bool moving_;
-    std::optional<io::AtomicFile> file_;  // the first rank's
-    std::optional<io::FilePart> part_;    // the others'
+    std::optional<io::AtomicFile> file_;  // the whole file; only on the first rank
+    std::optional<io::FilePart> part_;    // part of the first rank's file; only on the other ranks
 };
 
 /// The first rank writes the pieces of all ranks.
 class RelayedOutput final : public PieceOutput {
 public:
-    /// `writer`: none but on the first rank.
+    /// `writer`: null except on the first rank.
     RelayedOutput(Cluster& cluster, std::unique_ptr<FoundWriter> writer)
         : cluster_(cluster), writer_(std::move(writer)) {}
 
@@ -118,7 +118,7 @@ private:
 #ifdef OCTOPAIR_WITH_PIPELINE
     void relay_collisions(const CollisionPiece& piece) { relay(cluster_, piece, writer_.get()); }
 #else
-    void relay_collisions(const CollisionPiece&) {}  // no collisions without filters
+    void relay_collisions(const CollisionPiece&) {}  // a build without filters has no collisions
 #endif
 
     Cluster& cluster_;

@@ -1,7 +1,7 @@
 // PieceOutput: makes one result of the pieces of all ranks.
 //
-// An .npy file of pairs is written by all ranks side by side. Everything else goes to the first rank, whose FoundWriter
-// writes it.
+// All ranks write an .npy file of pairs together, each its own part. For other outputs, all ranks send their pieces to the first rank,
+// whose FoundWriter writes the result.
 #pragma once
 
 #include <array>
@@ -69,13 +69,14 @@ void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer);
 class PieceOutput {
 public:
     virtual ~PieceOutput() = default;
-    /// Writes a frame, of which `piece` is this rank's part.
+    /// Writes the pairs of a frame. `piece`: the pairs of this rank.
     virtual void write(std::uint64_t frame, const PairList& piece) = 0;
     /// Throws: Error{usage} unless the output is an .npy file.
     virtual void write(std::uint64_t frame, std::span<const Pair64> piece) = 0;
     virtual void write(std::uint64_t frame, const CollisionPiece& piece) = 0;
     virtual void finish() = 0;
-    /// Returns how the result differs from an older one, on the first rank, if the request names one. After finish().
+    /// Returns, on the first rank, how the result differs from the older result of --baseline; nothing without --baseline. Requires:
+    /// finish() was called.
     virtual std::optional<io::ChangeCounts> changes() const { return std::nullopt; }
 };
 

@@ -32,7 +32,7 @@ std::string joined(const std::vector<std::string>& words) {
     return all;
 }
 
-/// Returns the axis up and the unit of the options, or else of the inputs' formats. Unknown where the formats differ.
+/// Returns the axis up and the unit: from the options if given, else from the formats of the inputs. Unknown if the formats differ.
 io::SceneSpace report_space(const DetectRequest& request, const FoundIn& sets) {
     io::SceneSpace space = request.pipeline.space;
     const io::SceneSpace &first = sets.first.scene.space, &second = sets.second.scene.space;
@@ -65,7 +65,7 @@ private:
 constexpr std::size_t max_collisions = 200'000;
 constexpr std::uint64_t max_report_bytes = std::uint64_t(32) << 20;  ///< of the page, before it is compressed
 
-/// The frame of a report, whose collisions are known.
+/// FrameFinder that returns the collisions of the report, without a search.
 class KnownFrame final : public viewer::FrameFinder {
 public:
     explicit KnownFrame(viewer::FrameData data) : data_(std::move(data)) {}
@@ -138,7 +138,7 @@ std::string ReportView::page() const {
     viewer::SceneContents contents = shown_scene(request_, first_);
     if (second_ != nullptr) append(contents, shown_scene(request_, *second_));
     contents.title = "Collisions";
-    contents.notices.clear();  // the report has them
+    contents.notices.clear();  // the report itself prints the notices
     KnownFrame finder(std::move(data));
     viewer::FrameSource source(std::move(contents), finder);
     source.load({});
@@ -153,7 +153,7 @@ std::string ReportView::page() const {
     return viewer::base64(viewer::gzip(html, 6));
 }
 
-/// Passes the rows of a report to its viewer, too.
+/// Writes each collision to the table of the report, and adds it to the viewer's page in the report.
 class ReportWithView final : public io::CollisionWriter {
 public:
     ReportWithView(std::unique_ptr<io::HtmlReport> report, ReportView view)

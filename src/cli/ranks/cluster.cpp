@@ -86,12 +86,12 @@ void check_same(const Facts& first, const Facts& other, std::size_t rank) {
     for (const Fact& fact : other) check(fact);
 }
 
-/// `of_ranks` has the facts of each rank. Throws: Error{usage} about the first fact that is not that of the first rank.
+/// Throws: Error{usage} about the first fact of any rank that differs from the fact of the first rank. `of_ranks`: facts by rank.
 void check_facts_agree(const std::vector<Facts>& of_ranks) {
     for (std::size_t rank = 1; rank < of_ranks.size(); ++rank) check_same(of_ranks[0], of_ranks[rank], rank);
 }
 
-/// Returns facts as bytes, to send them. Requires: no text contains '\0'.
+/// Encodes facts as bytes, to send them to other ranks. Requires: no text contains '\0'.
 std::string packed(const Facts& facts) {
     std::string bytes;
     for (const Fact& fact : facts) {
@@ -100,7 +100,7 @@ std::string packed(const Facts& facts) {
     return bytes;
 }
 
-/// Returns the facts of packed().
+/// Decodes the bytes that packed() returned.
 Facts unpacked(const std::string& bytes) {
     Facts facts;
     std::size_t at = 0;

@@ -37,12 +37,12 @@ public:
     /// Returns whether the last error was thrown on all ranks.
     bool ends_alike() const { return run_.ends_alike; }
 
-    /// Collective. Prints an error that all ranks have, on the first rank. Returns the exit status.
+    /// Collective. Prints, on the first rank, an error that all ranks have thrown. Returns the exit status.
     int fail_together(const Error& error);
 
     void together(const std::function<void()>& part) override;
     [[noreturn]] void refuse_object(std::uint64_t position, const std::string& message) override;
-    /// Collective. Runs `part`, whose errors are the same on all ranks without together(): for example an engine's call.
+    /// Collective. Runs `part`. Requires: if `part` throws, it throws the same error on all ranks, like a call of an MPI engine.
     void joint(const std::function<void()>& part);
 
     /// Collective. Throws: Error{usage}, the same on all ranks, unless all ranks pass the same facts.

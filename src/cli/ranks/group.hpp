@@ -9,7 +9,7 @@
 
 namespace octopair::cli {
 
-/// This process alone. Cluster overrides all of it.
+/// Implements a group of this process alone. Cluster overrides all virtual functions for the ranks of MPI.
 class Group {
 public:
     Group() = default;
@@ -25,8 +25,8 @@ public:
     /// Throws: if `part` throws on any rank, the same Error on all ranks.
     virtual void together(const std::function<void()>& part) { part(); }
 
-    /// Throws bad_input about an object, from within together(). If several ranks do, together() throws the error with the
-    /// lowest `position`: a number that orders the objects of all ranks.
+    /// Throws Error{bad_input} about an object. Requires: called within together(). If several ranks call it, together() throws the error
+    /// with the lowest `position`: a number that orders the objects of all ranks.
     [[noreturn]] virtual void refuse_object([[maybe_unused]] std::uint64_t position, const std::string& message) {
         throw Error(ErrorCode::bad_input, message);
     }

@@ -142,7 +142,7 @@ public:
         try {
             count_only ? count() : stream();
         } catch (const Error& error) {
-            // A failed or cancelled job has no result to keep, so --release applies here too.
+            // --release also removes a failed or cancelled job: it has no result that the user could lose.
             if (request_.release && has_no_result()) client_.release(request_.id, stop_);
             if (error.code() != ErrorCode::cancelled || stop_.stop_requested()) throw;
             throw Error(ErrorCode::engine_failed, "job " + request_.id + " was cancelled");

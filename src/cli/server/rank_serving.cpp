@@ -42,7 +42,7 @@ public:
         leading.on_silent_rank = [this](const std::string& what) { lose(what); };
         engine_ = make_leading_engine(MPI_COMM_WORLD, leading);
         options_.engine = [this](unsigned) { return std::move(engine_); };
-        // Small jobs and scenes run on threads of this process.
+        // Small jobs and scenes run on threads of this process, without the other ranks.
         options_.small_engine = [](unsigned threads) { return make_local_engine(threads); };
         options_.engine_widths.instant = std::min(options_.engine_widths.large, threads_for_instant_jobs());
         options_.on_drain = [this] { end_.request_stop(); };
@@ -85,7 +85,7 @@ private:
     unsigned ranks_;
     std::atomic<bool> lost_ = false;
     std::stop_source end_;
-    std::unique_ptr<Engine> engine_;  // null after the server took it
+    std::unique_ptr<Engine> engine_;  // null after the server has taken the engine
 };
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace octopair::cli {
 
 namespace {
 
-/// Makes malloc keep the freed memory of an upload for the next upload. The system would clear memory that it gets back, which
-/// takes as long as all other work of the server on the uploaded bytes.
+/// Makes malloc keep the freed memory of an upload for the next upload. The system would have to clear new memory, which takes as long
+/// as all other work of the server on the uploaded bytes.
 void keep_freed_memory() {
     mallopt(M_MMAP_THRESHOLD, 2 << 20);
     mallopt(M_TRIM_THRESHOLD, 64 << 20);
@@ -41,7 +41,7 @@ public:
     }
 
 private:
-    /// Returns the resident memory, less twice what jobs have reserved: they may take more than they reserve.
+    /// Estimates the memory that no job uses: resident memory minus twice the reserved memory, because jobs may use more than they reserve.
     static std::uint64_t unused_bytes(const service::Server& server) {
         const std::uint64_t resident = resident_bytes(), used = 2 * server.load().memory_bytes;
         return resident - std::min(resident, used);

@@ -32,8 +32,8 @@ service::ServerOptions server_options_of(const ServeRequest& request) {
     options.engine_name = described.engine;
     const unsigned width = described.threads + described.workers;
     const bool local = request.engine.runs_in_caller();
-    // One engine more than threads or workers for small jobs, because a client can have all but one. With worker processes no job is
-    // instant, because every job wakes another process.
+    // Small jobs get width + 1 engines: one client may use all but one of them, so a single client can use `width`. With worker processes
+    // no job runs on the calling thread, because every job wakes another process.
     options.engine_widths = {width, width + 1, local ? std::min(width, threads_for_instant_jobs()) : 0};
     options.renewable_engines = local;
     options.engine = [choice = request.engine](unsigned one_width) {
@@ -68,7 +68,7 @@ void log_start(spdlog::logger& log, const service::Server& server, const service
 }
 
 void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log) {
-    // Besides connections: files of jobs, engines, the log. A connection has a second descriptor until its first call.
+    // reserved: descriptors for files of jobs, engines and the log. A connection needs a second descriptor until its first call.
     constexpr rlim_t reserved = 96, smallest = 256, for_connection = 2;
     rlimit files{};
     if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
@@ -84,7 +84,7 @@ void fit_descriptors(service::ServerLimits& limits, spdlog::logger& log) {
 }
 
 void fit_memory(service::ServerLimits& limits, spdlog::logger& log) {
-    // The server takes more than the limit says (docs/server.md): fixed amounts, and a part of the limit.
+    // The whole process needs more memory than ServerLimits::memory_bytes (docs/server.md): `fixed` bytes, and a fraction of the limit.
     constexpr std::uint64_t fixed = std::uint64_t(384) << 20, least = std::uint64_t(64) << 20;
     const std::uint64_t machine = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGESIZE));
     const std::uint64_t memory = std::min(machine, control_group_limits().memory_bytes.value_or(machine));

@@ -44,8 +44,8 @@ void complete_serve_request(const Command& command, ServeRequest& request);
 
 // serving.cpp
 
-/// Returns how many jobs may run on threads of gRPC: all but one of these threads, so that one reads what other clients send. gRPC 1.51 has
-/// half as many as cores, at least 2 and at most 16.
+/// Returns how many jobs may run on threads of gRPC at a time: all threads but one, which reads the messages of other clients. gRPC 1.51
+/// has half as many threads as cores, at least 2 and at most 16.
 unsigned threads_for_instant_jobs();
 
 /// Returns the options of the server, with the engine of the request. With --engine mpi, the caller must replace the engine.
@@ -72,7 +72,7 @@ void fit_memory(service::ServerLimits& limits, spdlog::logger& log);
 /// Blocks SIGHUP in this thread and those that it starts, for a Reloader. Call it before the first thread starts.
 void block_hang_up();
 
-/// Calls Server::reload on each SIGHUP, and logs the result. Borrows the server and the log.
+/// Thread that calls Server::reload on each SIGHUP, and logs the result. Borrows the server and the log.
 class Reloader {
 public:
     Reloader(service::Server& server, spdlog::logger& log);
@@ -85,7 +85,7 @@ private:
     std::thread thread_;
 };
 
-/// Waits for a stop request. Calls `sometimes`, if given, every five seconds.
+/// Waits for a stop request, and meanwhile calls `sometimes`, if given, every five seconds.
 void wait_for_stop(const std::stop_token& stop, const std::function<void()>& sometimes = {});
 /// Drains the server (Server::drain), and logs the beginning and the end.
 void drain(spdlog::logger& log, service::Server& server);

@@ -70,7 +70,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     try {
         for (const InputSet* set : {&inputs, &against}) set->scene.check_mapped();
     } catch (const Error& error) {
-        // A job with an id of the caller may be older than this call.
+        // With --id, the job may have existed before this command. So do not remove the job.
         if (!request.id.empty())
             throw Error(error.code(), std::string(error.what()) + "; job " + id + " may have some of the new numbers");
         remove_job(client, id);

@@ -10,7 +10,7 @@ namespace octopair::cli {
 
 namespace {
 
-constexpr std::uint64_t max_bytes = std::uint64_t(2) << 30;  ///< for the steps of a recording
+constexpr std::uint64_t max_bytes = std::uint64_t(2) << 30;  ///< maximum memory of the steps of a recording
 
 /// A step of the recorded scene.
 struct RecordedStep {
@@ -37,7 +37,7 @@ RecordedStep step_of(Scene& scene, const StepResult& result) {
 
 class RecordingFinder final : public viewer::FrameFinder {
 public:
-    /// All frames have `objects` objects. Those that a step does not have yet do not exist in it.
+    /// `objects`: number of objects of each frame. Objects that a step does not have yet are marked as not existing in its frame.
     RecordingFinder(std::vector<RecordedStep> steps, std::uint64_t objects)
         : steps_(std::move(steps)), objects_(objects) {}
 

@@ -21,7 +21,7 @@ namespace octopair::cli {
 
 namespace {
 
-constexpr std::uint64_t max_pairs = 20'000'000;  ///< 160 MB; a notice tells of more
+constexpr std::uint64_t max_pairs = 20'000'000;  ///< per frame, 160 MB; the page has a notice if there are more
 
 /// Inputs of a scene. Shared by its contents and its finder.
 struct Inputs {
@@ -168,7 +168,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
         content.shapes = true;
 #endif
         inputs->set = read_input_set(request.detect.inputs, content, stop);
-        inputs->set.scene.copy_mapped();  // the page reads boxes at any time
+        inputs->set.scene.copy_mapped();  // pages read boxes later, when the mapped file may have changed
 #ifdef OCTOPAIR_WITH_PIPELINE
         make_shaped(inputs->set, {local_threads(request.detect.engine), request.detect.pipeline.weld.value_or(0)},
                     stop);
@@ -185,7 +185,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
         return view;
     }
     io::ResultFile result = io::read_result(request.result, stop);
-    if (!inputs->set.scene.moving) result.first_frame = 0;  // a number in the name is no frame, then
+    if (!inputs->set.scene.moving) result.first_frame = 0;  // a number in the file name is then no frame number
     check_result(result, inputs->set, request.result);
     view.contents.contacts = result.frames.has_contacts();
     view.finder = std::make_unique<ResultFinder>(inputs, std::move(result));

@@ -1,5 +1,5 @@
-// ServerContact: calls of the server that `octopair view` shows. Pages get a message when the server stops answering, and when it answers
-// again.
+// ServerContact: makes the calls of `octopair view` to a server. Sends a message to the pages when the server stops answering, and when
+// it answers again.
 #pragma once
 
 #include <atomic>
@@ -74,7 +74,7 @@ public:
 
 private:
     std::string path_;
-    bool lost_ = false;  // the last call had no answer
+    bool lost_ = false;  // true if the server did not answer the last call
 };
 
 }  // namespace octopair::cli

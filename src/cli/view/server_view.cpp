@@ -58,14 +58,15 @@ viewer::LiveState state_of(SceneSnapshot&& snapshot) {
     return state;
 }
 
-/// Returns the client options of the command with at most 2 s of patience, so that pages soon get a message. The calls are repeated.
+/// Returns the client options of the command, with at most 2 s of patience. So pages soon get a message when the server does not answer.
+/// The program repeats its calls anyway.
 ClientOptions watching_options(const ServerChoice& choice) {
     ClientOptions options = client_options(choice);
     options.patience = std::min<std::chrono::milliseconds>(options.patience, 2s);
     return options;
 }
 
-/// A scene of the server, which is watched while pages show it.
+/// A scene of the server. A thread watches the scene while pages show it.
 class WatchedScene {
 public:
     WatchedScene(std::string id, viewer::SceneContents contents) : id_(std::move(id)), source_(std::move(contents)) {}
@@ -98,7 +99,7 @@ private:
                 server.notify();
             }
         } catch (const std::exception& error) {
-            // A scene that was there has ended.
+            // bad_input after the first snapshot: the server no longer has the scene, so the scene has ended.
             const auto* const known = dynamic_cast<const Error*>(&error);
             const bool ended = step > 0 && known != nullptr && known->code() == ErrorCode::bad_input;
             if (!stop.stop_requested())
@@ -119,7 +120,7 @@ private:
     std::string id_;
     viewer::LiveSource source_;
     std::mutex mutex_;
-    bool watched_ = false;  // guarded by mutex_: a thread watches, and has not decided to end
+    bool watched_ = false;  // guarded by mutex_; true while a thread watches the scene and will not end
     std::jthread thread_;
 };
 
@@ -130,7 +131,7 @@ public:
         : address_(choice.address),
           jobs_(address_, watching_options(choice)),
           scenes_(address_, watching_options(choice)) {
-        message_ = list({});  // a server that cannot be reached is an error of the command
+        message_ = list({});  // throws if the server cannot be reached, so the command fails at once
     }
 
     /// Sends the state of the server to the pages twice a second, until a stop request.
@@ -149,7 +150,7 @@ public:
             ended_ = true;
             scenes.swap(watched_);
         }
-        scenes.clear();  // waits for the threads, without the lock
+        scenes.clear();  // destroys the scenes outside the lock, because this waits for their threads
     }
 
     std::optional<viewer::Answer> get(const viewer::Address& address) override {
@@ -187,7 +188,7 @@ public:
 private:
     using ScenePointer = std::shared_ptr<WatchedScene>;
 
-    /// Returns whether a page that leaves was counted when it came. Pages of one path are interchangeable.
+    /// Counts a page that connects (`here`) or disconnects. Returns false for a disconnecting page whose path has no counted pages.
     bool counts(const std::string& path, bool here) {
         const std::lock_guard lock(mutex_);
         unsigned& counted = counted_[path];
@@ -239,7 +240,7 @@ private:
         }
     }
 
-    /// Returns a scene by its id; null if the text is no id. The server may have no such scene: then its watcher says so.
+    /// Returns the scene with this id, or null if the text is not a valid id. If the server has no such scene, watch() reports the error.
     ScenePointer find(const std::string& id) {
         constexpr std::size_t id_length = 36;
         if (id.size() != id_length || id.find_first_not_of("0123456789abcdef-") != std::string::npos) return nullptr;
@@ -269,7 +270,7 @@ private:
             scene = watched_.erase(scene);
         }
         lock.unlock();
-        freed.clear();  // waits for their threads, without the lock
+        freed.clear();  // destroys the scenes outside the lock, because this waits for their threads
     }
 
     viewer::Answer view_answer() const {
@@ -289,7 +290,7 @@ private:
     std::string message_;             // the latest state, guarded by mutex_ like the members below
     std::vector<SceneStatus> known_;  // the latest list
     std::map<std::string, ScenePointer> watched_;
-    std::map<std::string, unsigned> counted_;  // pages of each path that their scene counts
+    std::map<std::string, unsigned> counted_;  // number of connected pages by path
     bool ended_ = false;
 };
 

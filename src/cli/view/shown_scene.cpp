@@ -28,7 +28,7 @@ void add_shapes(viewer::SceneContents& contents, const InputSet& set) {
     if (set.shaped == nullptr) return;
     const ShapedObjects objects = set.shaped->objects();
     const Box3d bounds = set.bounds();
-    // A plane is drawn around its origin, so it must reach the objects from there.
+    // The page draws a plane as a square around the plane's origin. The square must be large enough to reach the objects.
     const auto reach = [&](std::size_t axis) {
         return 2 * std::max(std::abs(bounds.min[axis]), std::abs(bounds.max[axis]));
     };

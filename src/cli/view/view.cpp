@@ -49,7 +49,7 @@ void wait_until_stopped(const std::stop_token& stop) {
 /// Loads a source on a thread of its own, so that a page can show the progress of a long search.
 class Loading {
 public:
-    /// Shows the progress on `line` at first.
+    /// Starts to load. Shows the progress on `line` until report_to() is called.
     Loading(viewer::FrameSource& source, ProgressLine& line)
         : source_(source), line_(line), thread_([this] { run(); }) {}
 
@@ -120,7 +120,7 @@ std::jthread start_counting(viewer::FrameSource& source, viewer::PageServer& ser
                                 stop);
         } catch (const std::exception& error) {
             if (stop.stop_requested()) return;
-            // The frames before can be shown, so the command goes on, and the status of this failure has no use.
+            // Pages can still show the frames before the failure. So print the error, ignore its exit status, and go on.
             static_cast<void>(fail(ErrorCode::bad_input, error.what()));
             server.broadcast("", viewer::timeline_message(source.counted()));
         }
@@ -133,7 +133,7 @@ void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& pro
     std::optional<viewer::PageServer> server;
     server.emplace(source, server_options(request));
     Loading loading(source, progress);
-    const bool loaded = loading.wait(300ms, stop);  // a wrong input is an error of the command, not of a page
+    const bool loaded = loading.wait(300ms, stop);  // an early error ends the command before a page opens
     throw_if_stopped(stop);
     loading.report_to(*server);
     present(request, *server);

@@ -30,7 +30,7 @@ struct ViewRequest {
 
 void add_view_options(Command& command, ViewRequest& request);
 
-/// Sorts the inputs into scenes, a result, and the address of a server. Sets defaults.
+/// Classifies each input: scene file, result file, or address of a server. Sets defaults.
 /// Throws: Error{usage} for options that do not fit together; Error{io_failed} for an input that cannot be read.
 void check_view_options(ViewRequest& request);
 
@@ -46,7 +46,7 @@ struct LoadedView {
 
 // scene_input.cpp
 
-/// Reads scene files. With a result, its pairs are shown, else those that a search finds.
+/// Reads scene files. The page shows the pairs of the result, if given, or else the pairs that a search finds.
 /// Requires: no other thread of this process runs (isolated_read.hpp).
 /// Throws: what read_input_set() throws; Error{bad_input} for a result that does not fit the scene.
 LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop);
@@ -66,7 +66,7 @@ LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, co
 
 // shown_scene.cpp
 
-/// Returns the axis as pages get it: "y", "z" or empty.
+/// Returns the word for the axis up in messages to pages: "y", "z", or empty if unknown.
 std::string axis_word(io::UpAxis up);
 
 /// Returns names, groups, shapes, axes and warnings of a set. The members `title` and `details` stay empty.

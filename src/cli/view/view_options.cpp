@@ -63,7 +63,7 @@ bool is_address(const std::string& input) {
            input.find_first_not_of("0123456789", colon + 1) == std::string::npos;
 }
 
-/// Throws: Error{usage} for options of a search. `input` is what is shown without a search.
+/// Throws: Error{usage} if options of a search are given. `input`: the input, for the message; showing it needs no search.
 void check_no_search(const DetectRequest& request, const std::string& input) {
     const char* given = nullptr;
     if (request.margin > 0) given = "--margin";
@@ -88,11 +88,11 @@ void check_server_view(ViewRequest& request) {
 }
 
 void set_stage(DetectRequest& request) {
-    // A mesh file has shapes. Without --stage they are tested in full, because the page shows contacts.
+    // If the inputs have shapes and --stage is not given, run the stage `features`, because the page shows contacts.
     if (!request.pipeline.stage && stage_of(request) == Stage::objects) request.pipeline.stage = Stage::features;
 }
 
-/// Sets apart the result among the inputs.
+/// Moves the result file among the inputs, if any, to request.result.
 void find_result(ViewRequest& request) {
     std::vector<std::string> scenes;
     for (const std::string& input : request.detect.inputs) {
@@ -107,7 +107,7 @@ void find_result(ViewRequest& request) {
     request.detect.inputs = std::move(scenes);
 }
 
-/// Checks what is shown besides servers, and sets the last stage of the search.
+/// Checks the options for scenes and results, and sets the last stage of the search.
 void check_scenes(ViewRequest& request) {
     DetectRequest& detect = request.detect;
     if (!request.result.empty()) {

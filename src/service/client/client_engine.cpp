@@ -63,8 +63,8 @@ RemoteJob::RemoteJob(Connection& connection, const detail::Request& request, con
       upload_(spec_of(request, pairs_wanted_), arrays_of(request)),
       received_(connection.server(), output, control) {}
 
-/// Runs the job with one message each way. Returns false if the input or result is too large, or if the result is expected to
-/// be: the server's work for a result that does not fit would be wasted.
+/// Runs the job with one message each way. Returns false if the input or the result is too large for one message.
+/// Also returns false if the result is expected to be too large: the server would drop such a result after the search.
 bool RemoteJob::run_small() {
     const std::uint64_t bytes = upload_.bytes();
     if (bytes > max_small_bytes || (pairs_wanted_ && bytes > connection_.small_input())) return false;

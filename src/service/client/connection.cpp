@@ -28,7 +28,7 @@ namespace octopair::service {
 
 namespace {
 
-/// Minimum deadline of Describe, the first call on a connection: a shorter time-out of the user would leave no time for a round trip.
+/// Describe gets at least this deadline, even if the user's time-out is shorter. A shorter deadline could end before any answer arrives.
 constexpr std::chrono::milliseconds min_deadline(1000);
 
 bool encrypts(const ClientOptions& options) {
@@ -68,9 +68,9 @@ std::vector<uid_t> trusted_users(const std::string& server_user) {
     return users;
 }
 
-/// Checks a socket and all folders above it. Trusted users are this user, root, and, unless it is empty, `server_user` (a name or
-/// number). The socket and the folders must belong to trusted users. Other users must not be able to write to the folder of the socket,
-/// nor to folders above it, unless these are sticky, like /tmp. The socket need not exist.
+/// Checks that no untrusted user can replace the socket at `path`. The socket need not exist.
+/// Trusted users are this user, root, and `server_user` (a name or number; empty: nobody else). Trusted users must own the socket and
+/// all folders above the socket. Other users must not have write access to these folders, except sticky folders above, like /tmp.
 /// Throws: Error{usage} that names the folder or socket, or an unknown user.
 void check_socket_trust(const std::string& path, const std::string& server_user) {
     const std::vector<uid_t> users = trusted_users(server_user);
@@ -130,7 +130,7 @@ grpc::ChannelArguments arguments() {
     return arguments;
 }
 
-/// Returns whether the server has reached its limit of connections. gRPC reports only GOAWAY then.
+/// Returns whether the server refused the connection because of its limit on connections. gRPC then reports only the frame GOAWAY.
 bool refuses_connections(const grpc::Status& status) {
     return status.error_message().find("GOAWAY") != std::string::npos;
 }
@@ -205,12 +205,12 @@ void Connection::RetryTimer::wait_or_throw(const grpc::Status& status, const std
         refused_ = false;
     }
     if (refuses_connections(status)) refused_ = true;
-    // A refused connection may also break before GOAWAY arrives.
+    // A connection that the server refuses may break before GOAWAY arrives. Such a break does not show that the server takes calls.
     if (was_connected(status) && !refused_) connection_.met();
     connection_.check_socket();
-    // Backoff, because gRPC would reconnect at once, thousands of times a second.
+    // Sleep before the next attempt: gRPC itself would reconnect thousands of times a second.
     std::this_thread::sleep_for(refuses_connections(status) ? 4 * apart : apart);
-    // gRPC connects only while a thread waits in it. Wait here, because a call would wait too long if no server answers.
+    // gRPC connects only while a thread waits in gRPC. WaitForConnected() returns after `apart`; a call would wait until its deadline.
     do {
         throw_if_stopped(stop);
         if (Clock::now() - unavailable_since_ >=

@@ -38,7 +38,7 @@ public:
     /// Estimate, learned from earlier jobs: results of jobs with at most this many input bytes fit into one message.
     std::atomic<std::uint64_t>& small_input() { return small_input_; }
 
-    /// Notes a sign of life of the server. This restarts the timeout of RetryTimer.
+    /// Records that the server has sent something. This restarts the timeout of RetryTimer.
     void heard() {
         heard_ = Clock::now();
         met_ = true;
@@ -68,7 +68,7 @@ private:
     private:
         Connection& connection_;
         Clock::time_point unavailable_since_{};
-        bool refused_ = false;  // since then the server has refused a connection because of its limit
+        bool refused_ = false;  // the server has refused a connection because of its limit, since unavailable_since_
     };
 
     /// Throws: what check_socket_trust() throws, if the token goes to a Unix socket.

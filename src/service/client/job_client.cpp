@@ -203,7 +203,7 @@ void JobClient::release(const std::string& id, std::stop_token stop) {
         // An earlier attempt whose answer was lost may have released the job.
         if (attempts == 1) throw;
     } catch (const Error& error) {
-        // An older server does not say that there is no such job. It refuses a question about the job with this code, too.
+        // A server of an older version has no error of its own for an unknown job: release and status of such a job both give bad_input.
         if (attempts == 1 || error.code() != ErrorCode::bad_input || state_->has_job(id, stop)) throw;
     }
 }

@@ -84,9 +84,9 @@ void PendingCalls::send(const Send& send) {
     clear();
 }
 
-/// A new scene assigns ascending indices. After its first step, it frees the indices of removed objects in the order of their
-/// removal. So the calls add an object for each index, then remove those that are not in use. From then on, the server's
-/// scene assigns the same indices as the client's.
+/// The server's scene must assign the same indices as the client's scene. A new scene assigns ascending indices, and after its first
+/// step frees the indices of removed objects in the order of removal. So the calls add an object for each index of the client's scene,
+/// then remove the objects at indices that the client's scene does not use.
 void PendingCalls::send_whole(const SceneOptions& options, const SceneObjects& objects, const Send& send) {
     clear();
     generation_offsets_.clear();
@@ -119,7 +119,8 @@ void PendingCalls::set_generation_offsets(const ObjectTable& table) {
     if (any) generation_offsets_ = std::move(older);
 }
 
-/// Repeats the sweeps. The table has boxes that bound the whole ways; the server still needs the boxes at their ends.
+/// Encodes the sweeps of the current step again. The object table has one box around the whole way of each swept object. The server
+/// also needs the box at the end of the way.
 void PendingCalls::sweep_again(const SceneObjects& objects, Precision precision) {
     for (const SceneObjects::Swept& swept : objects.swept()) {
         if (!objects.table().contains(swept.id)) continue;

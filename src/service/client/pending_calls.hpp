@@ -2,7 +2,8 @@
 //
 // Invariants
 //   A call with more than `max_objects` objects becomes several records, because records of the protocol are at most 2 MiB.
-//   An object has the same index on client and server. Its generation may be lower on the server, whose scene may be newer.
+//   An object has the same index on client and server. The object's generation may be lower on the server, if the client has sent the
+//   whole scene again to a new scene of the server.
 #pragma once
 
 #include <cstdint>

@@ -44,7 +44,7 @@ grpc::Status RawStream::run(const std::stop_token& stop) {
 }
 
 void RawStream::handle(Completion completion, bool ok) {
-    // Other events show only that gRPC took something: it does so also for a server that ends each call.
+    // Only a finished read proves that the server answers. gRPC also completes starts and writes of calls that the server ends at once.
     if (ok && completion == Completion::read) connection_.heard();
     switch (completion) {
         case Completion::started:

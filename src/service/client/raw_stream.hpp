@@ -22,7 +22,7 @@ public:
     /// The method to call, and the functions that the stream calls.
     struct Callbacks {
         const char* method = nullptr;  ///< "/PACKAGE.SERVICE/METHOD"
-        /// Returns the next message to the server; nothing at the end. An exception cancels the call.
+        /// Returns the next message to the server, or nothing after the last message. An exception cancels the call.
         std::function<std::optional<grpc::ByteBuffer>()> next;
         /// Receives a message from the server. An exception cancels the call.
         std::function<void(grpc::ByteBuffer&)> take;

@@ -32,7 +32,7 @@ void Received::take(grpc::ByteBuffer& message) {
     if (small.has_summary()) summary_ = std::move(*small.mutable_summary());
 }
 
-/// Unpacks a message, with its pairs at the front of `room_` or `held_`. Returns the number of pairs.
+/// Unpacks a message. Writes its pairs to the front of `room_` (with a list) or `held_` (without). Returns the number of pairs.
 std::size_t Received::unpack_pairs(grpc::ByteBuffer& message, v1::Download& small) {
     const std::size_t most = message.Length() / sizeof(Pair) + 1;
     std::size_t bytes = 0;
@@ -56,7 +56,7 @@ void Received::refuse_message() const {
     throw Error(ErrorCode::engine_failed, server_ + ": the answer is not a valid message of octopair's protocol");
 }
 
-/// Checks that this attempt continues the same result.
+/// Throws if earlier attempts received pairs of a result with another hash.
 void Received::check_head(const v1::ResultHead& head) {
     if (pairs_ > 0 && head.hash() != hash_) {
         throw Error(ErrorCode::engine_failed,

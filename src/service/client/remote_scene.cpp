@@ -76,12 +76,12 @@ private:
     service::PendingCalls calls_;
     service::Connection connection_;
     std::optional<SceneStream> stream_;
-    bool whole_ = false;  // the current step is the first of its stream, so the whole scene is sent
+    bool whole_ = false;  // the current step is the first step of its stream, so the client sends the whole scene
     Answer answer_;
 
     PairHistory history_;
     PairChanges changes_;  // changes of the last step
-    PairChanges found_;    // changes of the step under way, which may still fail
+    PairChanges found_;    // changes of the current step; swapped into changes_ when the step has succeeded
     PairList persisting_;
     StepResult result_;
 };
@@ -116,7 +116,7 @@ grpc::Status RemoteScene::State::ask(const std::stop_token& stop) {
     if (exchange(stop)) return grpc::Status::OK;
     const grpc::Status status = stream_->status();
     forget_stream();
-    // A server that shuts down cancels its calls. A call that ends without a result has failed, even with status OK.
+    // A server that shuts down cancels its calls, or ends them with status OK. In both cases the step has no result, so it is retried.
     const bool away = status.ok() || status.error_code() == grpc::StatusCode::CANCELLED;
     return away ? grpc::Status(grpc::StatusCode::UNAVAILABLE, "the server ended the scene") : status;
 }

@@ -50,7 +50,7 @@ private:
     const std::string& server_;
     std::optional<SceneSnapshot> snapshot_;
     std::vector<std::byte> presence_;
-    std::array<std::span<std::byte>, 3> rooms_;  // parts of presence, boxes and pairs that were not received yet
+    std::array<std::span<std::byte>, 3> rooms_;  // unfilled parts of the arrays presence, boxes and pairs
 };
 
 void ReceivedSnapshot::restart() {
@@ -60,7 +60,7 @@ void ReceivedSnapshot::restart() {
 }
 
 void ReceivedSnapshot::take(grpc::ByteBuffer& message) {
-    // The head is parsed together with the data of its message, but needed before. So the data are kept until then.
+    // unpack() passes the data on before the head is parsed. The head has the sizes of the arrays, so keep the data until then.
     std::vector<std::byte> data;
     v1::SceneSnapshot small;
     if (!unpack(message, small,

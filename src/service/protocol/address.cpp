@@ -37,8 +37,8 @@ bool is_numeric(int family, std::string_view text) {
     return ::inet_pton(family, std::string(text).c_str(), &address) == 1;
 }
 
-/// Returns whether `host` ends in a number. So it is no name, and getaddrinfo() reads it as an IPv4 address in one of many forms: 127.1,
-/// 0x7f.0.0.1 and 0177.0.0.1 are 127.0.0.1, but 127.0.0.011 is 127.0.0.9.
+/// Returns whether the last part of `host` is a number. getaddrinfo() reads such a host as an IPv4 address in one of many forms:
+/// 127.1, 0x7f.0.0.1 and 0177.0.0.1 are 127.0.0.1, but 127.0.0.011 is 127.0.0.9.
 bool ends_in_number(std::string_view host) {
     if (host.ends_with('.')) host.remove_suffix(1);
     const std::string_view last = host.substr(host.rfind('.') + 1);
@@ -83,10 +83,10 @@ std::string Address::text() const {
 }
 
 std::string Address::uri() const {
-    // The scheme is always written: gRPC would read a host that is named like a scheme, as in dns:50051, as one.
+    // Always write the scheme "dns:". Without a scheme, gRPC would read a host that is called "dns", as in dns:50051, as a scheme.
     if (!is_unix()) return "dns:///" + escaped(text());
     std::string_view rest = path;
-    // Two slashes would begin the name of a machine.
+    // In a URI, two slashes would begin the name of a machine. So keep one slash of several.
     while (rest.starts_with("//")) rest.remove_prefix(1);
     return std::string(unix_prefix) + escaped(rest);
 }

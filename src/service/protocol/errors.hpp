@@ -1,4 +1,4 @@
-// Errors of a server that a client can tell from others of their code.
+// Subclasses of Error that a server throws. A client distinguishes them from other errors with the same ErrorCode.
 #pragma once
 
 #include <cstdint>

@@ -27,10 +27,10 @@ struct ServerLimits {
     double job_seconds = 600;                             ///< run time of a job or of a step of a scene
     std::uint64_t memory_bytes = std::uint64_t(8) << 30;  ///< memory of all inputs, results and searches together
     std::uint64_t state_bytes = std::uint64_t(16) << 30;  ///< size of the state folder
-    /// Parts of the last two amounts that one client may take. Default: half, on a server with tokens or client certificates;
+    /// Parts of memory_bytes and state_bytes that one client may take. Default: half, on a server with tokens or client certificates;
     /// otherwise all.
     std::optional<std::uint64_t> memory_bytes_per_client = {}, state_bytes_per_client = {};
-    /// Connections of one client over TCP. Default as above.
+    /// Connections of one client over TCP. Default: half of `connections`, on a server with tokens or client certificates; otherwise all.
     std::optional<std::uint64_t> connections_per_client = {};
     /// Calls of one client at a time. Default: 256, on a server with tokens or client certificates; otherwise no limit.
     std::optional<std::uint64_t> calls_per_client = {};
@@ -44,8 +44,8 @@ struct ServerTls {
 
 struct ServerOptions {
     Address listen;
-    /// Listening socket that the server takes over from another program, for the first server with these options; its address replaces
-    /// `listen`. Null: the server listens at `listen`.
+    /// Listening socket that another program has passed to this process. The first server with these options uses the socket, and the
+    /// socket's address replaces `listen`. Null: the server listens at `listen`.
     std::shared_ptr<Descriptor> listen_socket;
     EngineMaker engine;
     EngineMaker small_engine;        ///< maker of engines for small jobs; null: `engine`
@@ -72,7 +72,7 @@ inline bool tells_clients_apart(const ServerOptions& options) {
     return !options.token_file.empty() || !options.tls.client_authority.empty();
 }
 
-/// Returns how much of a limited amount one client may take: `each`, or else half, if the server can tell clients apart; 0: no limit.
+/// Returns how much of the amount `all` one client may take: `each` if given, else half if clients have different names, else 0 (no limit).
 inline std::uint64_t share_of_client(const ServerOptions& options, std::uint64_t all,
                                      std::optional<std::uint64_t> each) {
     return each.value_or(tells_clients_apart(options) ? all - all / 2 : 0);

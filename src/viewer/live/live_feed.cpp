@@ -40,7 +40,7 @@ std::size_t LiveFeed::shown() const { return std::min(size_of(*state_), most_sho
 
 void LiveFeed::put(LiveState&& next) {
     const std::lock_guard lock(mutex_);
-    // If memory was lacking before, differences are not complete.
+    // incomplete_ is still true if the last put() ran out of memory. Its differences may be lost, so pages need a whole frame.
     const bool incomplete = std::exchange(incomplete_, true);
     bool whole = incomplete || frame_ < 0 || size_of(next) != size_of(*state_);
     if (!has_origin_) {
@@ -57,7 +57,7 @@ void LiveFeed::put(LiveState&& next) {
     Difference difference = update_pairs(next);
     began_ = difference.began;
     ended_ = difference.ended;
-    // Pages do not have all pairs if there were too many. When there are fewer, they get all.
+    // Pages get at most max_listed_pairs pairs. When the number falls below this limit, send a whole frame with all pairs.
     whole |= !listed_before && pairs_.size() <= max_listed_pairs;
     state_ = std::make_shared<const LiveState>(std::move(next));
     update_rows(whole);
@@ -95,7 +95,7 @@ void LiveFeed::update_rows(bool whole) {
     }
 }
 
-/// Returns what the last event of each pair changes.
+/// Sorts the events by pair, and keeps only the last event of each pair.
 static void sort_events(std::vector<LiveState::PairEvent>& events) {
     std::stable_sort(events.begin(), events.end(), [](const auto& x, const auto& y) { return x.pair < y.pair; });
     std::size_t kept = 0;
@@ -171,7 +171,7 @@ std::string LiveFeed::difference_since(std::uint32_t last) const {
         for (const Pair pair : difference.ended) events.push_back({pair, false});
         for (const Pair pair : difference.began) events.push_back({pair, true});
     }
-    // A pair that began and ended since, or the other way round, is as it was before.
+    // If the first and the last event of a pair differ (it began and ended, or ended and began), the pair has not changed since `last`.
     std::map<Pair, bool> first;
     for (const auto& [pair, began] : events) first.emplace(pair, began);
     sort_events(events);
@@ -206,7 +206,7 @@ Message LiveFeed::frame_after(std::int64_t last) {
         std::string frame = base < 0 ? std::string() : difference_since(std::uint32_t(base));
         const std::size_t listed = std::min(pairs_.size(), max_listed_pairs);
         const std::size_t whole = sizeof(Head) + rows_.size() * sizeof(RelativeBox) + listed * sizeof(Pair);
-        if (base < 0 || frame.size() > whole) frame = whole_frame();  // the shorter one
+        if (base < 0 || frame.size() > whole) frame = whole_frame();  // send whichever is shorter
         made = std::make_shared<const std::string>(std::move(frame));
     }
     return made;

@@ -45,7 +45,7 @@ public:
 
     explicit LiveFeed(std::size_t most_shown = default_most_shown) : most_shown_(most_shown) {}
 
-    /// Takes the next state.
+    /// Makes the next frame, from the next state of the scene.
     void put(LiveState&& state);
     /// Returns the frame for a page that has frame `last` (-1: none); null if there is none newer.
     Message frame_after(std::int64_t last);
@@ -55,9 +55,9 @@ public:
         FrameData data;
         std::vector<Pair> began, ended;
     };
-    /// Returns the latest frame; one without objects before the first.
+    /// Returns the latest frame. Before the first put(), returns a frame without objects.
     Frame latest() const;
-    /// Returns the origin of all frames: the centre of the first one with objects.
+    /// Returns the origin of all frames: the centre of the first frame with objects.
     Point3d origin() const;
     std::size_t most_shown() const { return most_shown_; }
 
@@ -77,18 +77,18 @@ private:
     Head head() const;
 
     static constexpr std::size_t max_messages = 16;
-    // Pages with an older frame get a whole one.
+    // Limits on differences_. A page whose frame is older than all kept differences gets a whole frame.
     static constexpr std::size_t max_differences = 256, max_events = 1'000'000;
 
     const std::size_t most_shown_;
     mutable std::mutex mutex_;
     std::int64_t frame_ = -1;
-    std::int64_t oldest_base_ = 0;  // pages with an older frame need a whole one
+    std::int64_t oldest_base_ = 0;  // a page with an older frame than this number gets a whole frame
     std::shared_ptr<const LiveState> state_ = std::make_shared<LiveState>();
     std::vector<Pair> pairs_;
     std::vector<Pair> began_, ended_;  // of the latest frame
     Point3d origin_ = {};
-    bool has_origin_ = false;  // some frame had objects
+    bool has_origin_ = false;  // true after a frame with objects
     bool incomplete_ = false;  // true while put() runs, and after it has failed
     std::vector<RelativeBox> rows_;
     std::vector<std::uint32_t> changed_;  // by row

@@ -14,7 +14,7 @@ namespace octopair::viewer {
 
 class LiveSource final : public Source {
 public:
-    /// `contents`: title, names, axes. Its number of objects is ignored.
+    /// `contents`: title, names and axes of the scene. The number of objects comes from the frames, not from `contents`.
     explicit LiveSource(SceneContents contents) : contents_(std::move(contents)) {}
 
     LiveFeed& feed() { return feed_; }

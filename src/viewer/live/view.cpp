@@ -1,4 +1,4 @@
-// View: copies a running scene for its pages, seldom enough not to delay the scene.
+// View: copies the state of a running scene for pages. Copies take at most 1% of the time, so that they do not delay the scene.
 #include "octopair/view.hpp"
 
 #include <sys/resource.h>
@@ -85,7 +85,7 @@ private:
     static constexpr std::uint64_t max_pairs = 20'000'000;
     static constexpr int largest_share = 100;  // copying takes at most 1 / largest_share of the time
 
-    /// Keeps the events of a step for the next copy. If there are very many, the copy takes all pairs instead.
+    /// Keeps the events of a step for the next copy. Beyond `max_events`, drops the events, and the next copy takes all pairs.
     void keep_events(const StepResult& step) {
         const std::size_t more = step.began.size() + step.ended.size();
         all_pairs_needed_ |= incomplete_.exchange(false);
@@ -135,7 +135,7 @@ private:
     }
 
     void pass_states_on(const std::stop_token& stop) {
-        ::setpriority(PRIO_PROCESS, 0, 19);  // of this thread: the scene's threads go first
+        ::setpriority(PRIO_PROCESS, 0, 19);  // lowest priority for this thread: the scene's threads run first
         std::unique_lock lock(mutex_);
         while (ready_.wait(lock, stop, [this] { return bool(busy_); })) {
             LiveState state = std::move(waiting_);
@@ -156,14 +156,14 @@ private:
     const Clock::duration least_pause_;
     std::uint64_t steps_ = 0;
     std::vector<LiveState::PairEvent> events_;  // since the last copy
-    bool all_pairs_needed_ = true;              // events are missing
-    bool too_many_ = false;                     // of the last copy: it has no pairs
+    bool all_pairs_needed_ = true;              // events_ lacks events, so the next copy takes all pairs
+    bool too_many_ = false;                     // the last copy has no pairs, because there were more than max_pairs
     Clock::time_point next_ = {}, unwatched_ = {};
 
     std::mutex mutex_;
     std::condition_variable_any ready_, passed_on_;
     LiveState waiting_;                     // guarded by mutex_
-    std::atomic<bool> incomplete_ = false;  // a state was lost
+    std::atomic<bool> incomplete_ = false;  // a copied state was lost for lack of memory
     std::atomic<bool> busy_ = false;        // true from the copy until the state is passed on
     viewer::LiveSource source_;
     viewer::PageServer server_;

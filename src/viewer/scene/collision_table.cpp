@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view class_words[] = {"unknown",     "clearance", "collision", "touching",
                                             "penetrating", "contained", "duplicate"};
 
-/// The normal of a contact whose point alone is known is 0.
+/// Returns a contact as JSON. A contact with a known point but no known normal has the normal 0.
 Json contact_json(const Contact& contact) {
     if (contact.normal == Point3d{}) return {{"point", json_of(contact.point)}};
     return {{"point", json_of(contact.point)}, {"normal", json_of(contact.normal)}, {"depth", contact.depth}};

@@ -1,4 +1,4 @@
-// Answers about one frame, for scenes of files and for live scenes alike.
+// Functions that make the answers to a page's requests about one frame. Scenes of files and live scenes use the same functions.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ Json json_of(const Box3d& box);
 /// Returns a number with commas between groups of three digits.
 std::string grouped_number(std::uint64_t number);
 
-/// A frame as the page sees it. Borrowed.
+/// A frame as the page shows it. Borrows all members.
 struct ShownFrame {
     const SceneContents& contents;
     std::uint64_t objects;  ///< number of objects of the frame
@@ -34,7 +34,7 @@ struct ShownFrame {
     std::span<const Pair> began = {}, ended = {};
 };
 
-/// Largest numbers of what the page gets at once.
+/// Maximum numbers of pairs, octants and other elements in one answer.
 inline constexpr std::size_t max_listed_pairs = 200'000, max_listed_octants = 20'000, max_near = 100'000,
                              max_partners = 1'000, max_found = 50, max_rows = 1'000;
 

@@ -21,7 +21,7 @@ Json number_or_text(const Fact& fact) {
     return whole ? Json(std::int64_t(fact.number)) : Json(fact.number);
 }
 
-/// Frames that are searched for the first objects.
+/// Maximum number of empty frames at the begin that are skipped to find the first frame with objects.
 constexpr std::uint64_t max_empty_frames = 100;
 
 /// Adds facts to an object. "seconds.read" becomes the member "read" of "seconds".

@@ -26,8 +26,8 @@ public:
 
     /// Finds the first frame. `progress` may be empty. Throws: what the finder throws.
     void load(const ProgressSink& progress);
-    /// Finds all frames, and calls `more` with the number of frames that are counted, at most five times a second.
-    /// Throws: what the finder throws; Error{resource_limit} if the memory does not suffice. From then on, timeline.json has the
+    /// Counts the pairs of all frames. Calls `more` with the number of counted frames, at most five times a second.
+    /// Throws: what the finder throws; Error{resource_limit} if the memory does not suffice. After an exception, timeline.json has the
     /// reason.
     void count_frames(const std::function<void(std::uint64_t done)>& more, const std::stop_token& stop);
     /// Returns the number of frames that are counted so far.
@@ -45,7 +45,7 @@ public:
 
     /// Sets the message of greeting() while the source loads: progress from 0 to 1.
     void set_progress(double done) { progress_ = done; }
-    /// For an exported page: what the page says about it, and number of frames in it.
+    /// Properties of an exported page: number of its frames, and notices that the page shows.
     struct Export {
         std::uint64_t frames;
         std::vector<std::string> notices;
@@ -89,7 +89,7 @@ private:
     ShownObjects shown_;
     Point3d origin_ = {};
     Box3d bounds_ = {};
-    bool has_bounds_ = false;  // some frame had objects
+    bool has_bounds_ = false;  // true after a frame with objects was found
     std::uint64_t first_pairs_ = 0;
     std::vector<Fact> first_facts_;
     std::optional<Export> export_;

@@ -10,7 +10,7 @@ Octants octants_of(const ShownFrame& frame, unsigned threads) {
     const OctantOptions options{frame.contents.margin, threads};
     const FrameData& data = frame.data;
     if (data.exists.empty()) return list_octants({data.boxes, data.padding}, options);
-    // Objects that do not exist have no boxes, so the octree is that of the others.
+    // Build the octree of the existing objects only: objects that do not exist in this frame have no boxes.
     std::vector<Box3d> boxes;
     for (std::size_t i = 0; i < data.exists.size(); ++i) {
         if (data.has(i)) boxes.push_back(box_of(data, i));
@@ -37,7 +37,7 @@ OctalCode home_code(const FrameData& data, std::uint32_t object, const Octants& 
 
 namespace {
 
-/// Returns the part of an octant in which objects are looked up; nothing for an octant beyond.
+/// Returns the part of an octant inside `space`, or nothing if the octant is outside `space`.
 std::optional<Box3d> used_part(const OctantSummary& octant, const Box3d& space) {
     if (!overlap(octant.bounds, space)) return std::nullopt;
     Box3d part = octant.bounds;

@@ -32,7 +32,8 @@ void write_page(FrameSource& source, const std::function<void(std::string_view)>
     const std::size_t place = html.find(marker);
     const std::uint64_t frames = source.frames();
     source.prepare_export({frames, {}});
-    // The scene's own addresses hold the number of frames, so they come last.
+    // The data of source.addresses() hold the number of exported frames, which is known only after the frames are added. So encode the
+    // frames first.
     std::string data = elements(source, source.addresses_of(0));
     std::uint64_t written = 1;
     std::uint64_t fixed = html.size() + elements(source, source.addresses()).size();

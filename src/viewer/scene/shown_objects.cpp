@@ -110,7 +110,7 @@ ShownObjects::ShownObjects(const FrameData& frame, std::uint64_t objects, std::s
         const std::size_t others = most - large, rest = order.size() - large;
         std::size_t seen = 0;
         for (const std::uint32_t object : order) {
-            // Spreads `others` choices evenly over the `rest` objects that are not large.
+            // Choose `others` of the `rest` objects that are not among the largest, at even distances in octal order.
             const bool chosen = rows_[object] == 0 || (seen + 1) * others / rest > seen * others / rest;
             seen += rows_[object] == 0 ? 0 : 1;
             if (chosen) objects_.push_back(object);

@@ -34,7 +34,7 @@ Box3d box_of(const Boxes& boxes, std::size_t object);
 inline Box3d box_of(const FrameData& frame, std::size_t object) { return box_of(frame.boxes, object); }
 /// Returns a box relative to an origin; its ends are rounded to the nearest float32.
 RelativeBox relative(const Box3d& box, const Point3d& origin);
-/// Stands for an object that does not exist.
+/// Returns the box that stands for an object that does not exist in a frame: all coordinates are NaN.
 RelativeBox no_box();
 inline bool overlap(const Box3d& a, const Box3d& b) {
     bool all = true;

@@ -124,7 +124,8 @@ ShownShape shown(const shape::Plane& plane, double extent) {
     return out;
 }
 
-/// Grows the hull of points, one point after another. For pictures: faces that are nearly flat may be missing or dented.
+/// Builds the convex hull of points by adding one point after another. Precise enough for drawing only: nearly flat faces may be
+/// missing or dented.
 class HullBuilder {
 public:
     explicit HullBuilder(const std::vector<Point3d>& points) : points_(points) {}

@@ -105,7 +105,8 @@ bool Access::is_own(std::string_view host) const {
     const std::string_view name = std::string_view(text).substr(0, text.size() - suffix.size());
     const bool loopback = host_ == "127.0.0.1" || host_ == "[::1]", all = host_ == "0.0.0.0" || host_ == "[::]";
     if (name == host_ || ((loopback || all) && name == "localhost")) return true;
-    // A server on all addresses has none of its own. Other names are refused, so that no foreign name can lead to the server.
+    // A server that listens on all addresses accepts each numeric address in Host. Host names are refused: an attacker's domain could
+    // resolve to this machine (DNS rebinding).
     return all && is_numeric(name);
 }
 

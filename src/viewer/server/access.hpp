@@ -7,7 +7,7 @@
 
 namespace octopair::viewer {
 
-/// The parts of a request that decide. Absent headers are empty.
+/// The headers and the parameter `token` of a request, from which Access decides. Absent headers are empty.
 struct AccessRequest {
     std::string_view host, origin, cookie, authorization, token;
     bool has_origin = false;
@@ -20,7 +20,7 @@ public:
 
     /// Returns whether the request is for this server, from a page of this server, and has the token.
     bool allows(const AccessRequest& request) const;
-    /// Returns whether the parameter `token` of the request is right, so that it should become a cookie.
+    /// Returns whether the request has the right token as its parameter `token`. The server then sets the token as a cookie.
     bool introduces(const AccessRequest& request) const;
     /// Returns the header Set-Cookie that carries the token.
     std::string cookie() const;
@@ -37,8 +37,8 @@ struct Endpoint {
     std::string address;
     std::uint16_t port;
 };
-/// Returns whether a connection on this machine was opened by the user of this process or by root. The tables of sockets in /proc/net
-/// (Linux) tell; false without them.
+/// Returns whether the user of this process, or root, opened a connection on this machine. Reads the tables of sockets in /proc/net
+/// (Linux). Returns false if there are no such tables.
 bool is_own_user(const Endpoint& peer, const Endpoint& server);
 
 }  // namespace octopair::viewer

@@ -1,4 +1,5 @@
-// Address and Answer: a request of the page, and the data that it gets (viewer/protocol.md); and the messages that pages get.
+// Address: what a page requests. Answer: the data that the server returns. Also the messages that the server sends to pages by
+// WebSocket (viewer/protocol.md).
 #pragma once
 
 #include <cstdint>
@@ -65,17 +66,17 @@ std::string base64(std::string_view bytes);
 
 // Messages to pages over the WebSocket (viewer/protocol.md), as JSON.
 
-/// Says how far an activity is. `done`: from 0 to 1.
+/// Returns the message about the progress of the activity `what`. `done`: from 0 to 1.
 std::string progress_message(std::string_view what, double done);
-/// The data can be read.
+/// Returns the message that the source is loaded, so that the page can request data.
 std::string ready_message();
-/// The data will never be there.
+/// Returns the message that loading has failed, so that the page gets no data.
 std::string failed_message(std::string_view why);
-/// The watched server does not answer, and is asked again.
+/// Returns the message that the watched server does not answer, and that the program will call the server again.
 std::string waiting_message(std::string_view why);
-/// `done`: number of frames that timeline.json has.
+/// Returns the message that timeline.json has more frames. `done`: number of its frames.
 std::string timeline_message(std::uint64_t done);
-/// The watched scene has ended.
+/// Returns the message that the watched scene has ended.
 std::string closed_message();
 
 }  // namespace octopair::viewer

@@ -253,7 +253,7 @@ private:
     Message frame_;                     // live frame that is not yet sent
     Message outgoing_;                  // being sent
     std::optional<std::int64_t> last_;  // set while the page waits for a frame: the last frame that it has
-    std::uint64_t turn_ = 0;            // of the last frame
+    std::uint64_t turn_ = 0;            // number of the last sent frame (ConnectionHost::take_turn)
     bool sending_ = false, joined_ = false;
 };
 
@@ -281,7 +281,7 @@ public:
         parser_.emplace();
         parser_->header_limit(max_header);
         parser_->body_limit(0);
-        // Connections without a request must not keep others out for long.
+        // A connection that has sent no request occupies a slot, so it gets only 5 s.
         stream_.expires_after(std::exchange(first_, false) ? 5s : 30s);
         http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](BeastError error, std::size_t) {
             if (error == http::error::header_limit) return self->refuse(http::status::request_header_fields_too_large);
@@ -305,7 +305,7 @@ private:
         const std::optional<Address> address = Address::parse(view_of(request_.target()));
         const AccessRequest access = access_request(request_, address);
         if (!host_.access().allows(access)) {
-            request_.keep_alive(false);  // a stranger must not keep others out
+            request_.keep_alive(false);  // close the connection, so that strangers do not occupy slots
             return write(respond_text(
                 request_, http::status::forbidden,
                 "Only pages of this viewer, with its token, get an answer. Use the address that octopair printed."));
@@ -325,7 +325,7 @@ private:
         answer(*address);
     }
 
-    /// Sets the cookie, and leads to the same page without the token in its address.
+    /// Answers with the cookie and a redirect to the same address without the token.
     void redirect(const Address& address) {
         Response response = respond(request_, http::status::see_other);
         response.set(http::field::set_cookie, host_.access().cookie());
@@ -375,11 +375,11 @@ private:
     std::optional<Counted> counted_;
     ConnectionHost& host_;
     std::string address_;
-    bool stranger_ = true;  // before a request that was answered; only then the last owner is on the thread of the host
+    bool stranger_ = true;  // until a request is answered; until then only the host's thread may destroy this object
     beast::tcp_stream stream_;
     beast::flat_buffer buffer_{max_header + 4096};
     std::optional<http::request_parser<http::empty_body>> parser_;
-    bool first_ = true;  // before the first request
+    bool first_ = true;  // true until the first request is read
     Request request_;
     Response response_;
 };

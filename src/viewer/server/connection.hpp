@@ -29,11 +29,11 @@ public:
     virtual std::uint64_t last_turn() const = 0;
 };
 
-/// A connection without a request that was answered: a stranger's.
+/// A connection without an answered request yet: the client may be an attacker.
 class Stranger {
 public:
     virtual ~Stranger() = default;
-    /// Returns the address of its other end, without the port.
+    /// Returns the address of the client, without the port.
     virtual const std::string& address() const = 0;
     /// Ends the connection.
     virtual void cut() = 0;
@@ -50,7 +50,7 @@ public:
     virtual void opened() = 0;
     virtual void closed() = 0;
     virtual void came(Stranger& stranger) = 0;
-    /// The stranger has ended, or is one no longer.
+    /// Called when the connection of the stranger has ended, or has its first answered request.
     virtual void went(Stranger& stranger) = 0;
     virtual void joined(WebSocket& socket) = 0;
     virtual void left(WebSocket& socket) = 0;

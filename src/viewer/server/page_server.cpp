@@ -72,7 +72,8 @@ public:
             done.set_value();
         });
         done.get_future().wait();
-        // Each call of busy() waits for the connections' thread, which runs seldom if it has low priority and other programs are busy.
+        // Each call of busy() waits for the connections' thread. With low priority on a busy machine this thread runs seldom, so poll only
+        // until `latest`.
         while (Clock::now() < latest && busy()) std::this_thread::sleep_for(10ms);
         pool_.stop();
         pool_.join();
@@ -129,7 +130,7 @@ public:
     }
 
     bool may_send_frame() override {
-        if (stopping_) return false;  // making a frame would delay the end
+        if (stopping_) return false;  // making another frame would delay the destructor
         const auto now = Clock::now();
         if (!options_.low_priority || now >= next_frame_) return true;
         if (!std::exchange(frame_timer_runs_, true)) {
@@ -272,7 +273,7 @@ private:
 
     static constexpr unsigned max_connections = 256;
     static constexpr std::size_t max_strangers = 64;
-    /// For all pages together, with low priority. Without a limit, 50 pages slowed the steps of a scene of 100,000 boxes by a fifth.
+    /// Limit for all pages together, on a server with low priority. Without it, 50 pages made steps of a scene of 100,000 boxes 20% slower.
     static constexpr double max_frame_bytes_per_second = 50e6;
 
     Source& source_;

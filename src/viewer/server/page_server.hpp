@@ -21,8 +21,8 @@ namespace octopair::viewer {
 struct PageServerOptions {
     std::string host = "127.0.0.1";  ///< address to listen on
     std::uint16_t port = 0;          ///< 0: any free port
-    std::string token = {};          ///< empty: none
-    bool low_priority = false;       ///< true: other threads of the machine go first
+    std::string token = {};          ///< token that requests must have; empty: none
+    bool low_priority = false;       ///< true: the server's threads have the lowest priority of the system
 };
 
 class PageServer {

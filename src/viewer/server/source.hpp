@@ -1,4 +1,4 @@
-// Source: data that the server of the page offers. A page server has one source.
+// Source: interface to the data that a page server serves. A page server has one source.
 //
 // Threads   get() is called by one thread at a time; live_frame() and greeting() by the thread of the connections.
 #pragma once

@@ -59,7 +59,7 @@ private:
         attached_ = server().attached.take(1);
         const std::shared_ptr<ServerJob> job = this->job();
         job->queue();
-        // A client may reconnect before the server notices that its old connection broke. Its old job is then still in the
+        // A client may reconnect before the server notices that the old connection broke. The old job with this id is then still in the
         // table.
         for (auto before = server().jobs.enter(job); before != job; before = server().jobs.enter(job)) {
             before->cancel();

@@ -133,7 +133,7 @@ std::shared_ptr<ServerJob> releasable(const ServerContext& server, const Caller&
 }
 
 v1::JobList list(const ServerContext& server, const Caller& caller, const v1::ListRequest& asked) {
-    constexpr std::size_t most = 1000;  // reports of so many jobs fit into one message
+    constexpr std::size_t most = 1000;  // jobs per answer; 1000 reports fit into one message
     auto jobs = caller.sees_all() ? server.jobs.of_all(asked.after_owner(), asked.after(), most + 1)
                                   : server.jobs.of(caller.owner(), asked.after(), most + 1);
     v1::JobList list;

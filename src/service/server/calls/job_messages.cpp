@@ -17,7 +17,8 @@ namespace octopair::service {
 void Upload::take(grpc::ByteBuffer& message) {
     new_bytes_ += message.Length();
     v1::Upload small;
-    // The first message may also carry data. They are held back until the spec, which says how long the input is, was read.
+    // The first message may also carry input data, and unpack() passes the data on before the spec is parsed. The target of the data needs
+    // the spec, so keep the data until then.
     std::vector<std::byte> held;
     const auto hold = [&](std::span<const std::byte> data) { held.insert(held.end(), data.begin(), data.end()); };
     const auto append = [&](std::span<const std::byte> data) { this->append(data); };
@@ -38,7 +39,7 @@ void Upload::take(grpc::ByteBuffer& message) {
     }
 }
 
-/// After the last byte the job may run and end, which frees the target. So late data must not reach the target.
+/// Refuses data after the last byte of the input. By then the job may have ended and freed the target.
 void Upload::append(std::span<const std::byte> data) {
     if (data.empty()) return;
     check_fits(data, missing_);
@@ -80,7 +81,8 @@ Download::Next Download::make_next() {
     const std::optional<grpc::Slice> piece = job_->pairs().piece(offset_);
     if (piece) offset_ += piece->size() / sizeof(Pair);
     const bool last = report.state() == v1::DONE && offset_ >= job_->pairs().ready();
-    // The client of an attached job received `offset` pairs before it lost its connection. It finds the error by the summary.
+    // The client of an attached job received `offset` pairs before its connection broke. The client itself compares this number with
+    // the summary, so only detached jobs need this check.
     if (last && job_->detached() && offset_ > job_->pairs().ready()) {
         throw Error(ErrorCode::bad_input, "the result has " + std::to_string(job_->pairs().ready()) +
                                               " pairs; offset " + std::to_string(offset_) + " is beyond its end");

@@ -98,7 +98,7 @@ public:
 
 private:
     enum class Read : std::uint8_t { none, came, ended };
-    /// idle: waits between frames. waiting: waits for the rest of a frame.
+    /// What the thread of the call does. idle: waits for the first message of a frame. waiting: waits for the rest of a frame.
     enum class Doing : std::uint8_t { working, idle, waiting, stepping, writing };
 
     void work() {
@@ -174,7 +174,7 @@ private:
         throw Error(ErrorCode::bad_input, "the upload ended in the middle of a frame");
     }
 
-    /// Returns whether a message has come or the call ends. Requires: mutex_ is locked.
+    /// Returns whether a message has arrived or the call must end. Requires: mutex_ is locked.
     bool has_news() const { return read_ != Read::none || refusal_; }
 
     /// Waits between frames, and publishes the scene if a watcher comes.

@@ -85,7 +85,7 @@ private:
     void commit_now() {
         try {
             const auto job = server_.detached->commit(submission_);
-            // The job existed at the start of this upload, and was released since. The client submits it again.
+            // The job existed at the start of this upload, so the upload was not stored. The job was released since: the client must retry.
             if (!job)
                 return end({grpc::StatusCode::UNAVAILABLE, "the job was released during its upload; submit it again"});
             server_.server_log.job_submitted(*job, context_);

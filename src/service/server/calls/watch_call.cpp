@@ -24,11 +24,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Bounds what a watcher can make a scene copy.
+/// Maximum number of pairs in a snapshot. Limits how much a watcher can make the scene's thread copy.
 constexpr std::uint64_t max_listed_pairs = 1'000'000;
 
 v1::SceneList list_scenes(const ServerContext& server, const Caller& caller, const v1::ListScenesRequest& asked) {
-    constexpr std::size_t most = 1000;  // reports of so many scenes fit into one message
+    constexpr std::size_t most = 1000;  // scenes per answer; 1000 reports fit into one message
     auto scenes = server.scenes.of(caller, asked.after(), most + 1);
     v1::SceneList list;
     list.set_more(scenes.size() > most);

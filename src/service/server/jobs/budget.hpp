@@ -48,8 +48,8 @@ public:
     /// as in "bytes of memory". `total`: size of the budget. `each`: what one client may take. 0: unlimited.
     Budget(std::string limit, std::string unit, std::uint64_t total, std::uint64_t each = 0);
 
-    /// Reserves `amount` for a client; "" is no client, and has no limit of its own. Throws: LimitError if less is left. Thread safety:
-    /// all members of Budget are safe.
+    /// Reserves `amount` for a client. With an empty name, only the limit of the whole budget applies. Throws: LimitError if less than
+    /// `amount` is left. Thread safety: any thread may call any member of Budget.
     Reservation take(std::uint64_t amount, const std::string& client = {});
     /// Reserves `amount` even beyond the limits. For resources that were in use before this budget existed.
     Reservation take_unchecked(std::uint64_t amount, const std::string& client = {});

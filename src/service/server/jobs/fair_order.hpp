@@ -15,12 +15,12 @@ namespace octopair::service {
 /// Thread safety: none; the caller locks.
 class FairOrder {
 public:
-    /// Returns the time at which the next job of a client starts in the order: the smallest is next.
+    /// Returns the virtual start time of the client's next job. The job with the smallest start time runs next.
     double start_of(const std::string& client) const {
         const auto known = ends_.find(client);
         return known == ends_.end() ? now_ : std::max(now_, known->second);
     }
-    /// Notes that a job of a client begins. `work` > 0.
+    /// Records that a job of a client begins to run. Requires: `work`, the estimated work, is > 0.
     void begin(const std::string& client, double work) {
         now_ = start_of(client);
         ends_[client] = now_ + work;
@@ -28,15 +28,15 @@ public:
         if (ends_.size() > max_known) std::erase_if(ends_, [this](const auto& end) { return end.second <= now_; });
     }
 
-    /// Notes that a job of a client took more work than begin() assumed. `more` >= 0.
+    /// Records that a job of a client took more work than begin() assumed. Requires: `more`, the difference, is >= 0.
     void add(const std::string& client, double more) {
         const auto known = ends_.find(client);
         if (known != ends_.end()) known->second += more;
     }
 
 private:
-    double now_ = 0;                      // start of the job that began last
-    std::map<std::string, double> ends_;  // end of the last job of each client
+    double now_ = 0;                      // virtual start time of the job that began last
+    std::map<std::string, double> ends_;  // virtual end time of the last job of each client
 };
 
 }  // namespace octopair::service

@@ -23,7 +23,7 @@ namespace octopair::service {
 
 class UploadedInput;
 
-/// The server's disk, or its limit on state, has no room now for something that a job stores.
+/// Thrown when a job's input or result does not fit on the disk now, or exceeds the limit on the state folder.
 class NoRoomError : public Error {
 public:
     explicit NoRoomError(const std::string& message) : Error(ErrorCode::io_failed, message) {}
@@ -43,10 +43,10 @@ public:
                                                 const std::stop_token& stop) const = 0;
     /// Stores how the job ended. On return `ending` is on the disk. Throws: Error{io_failed}, NoRoomError.
     virtual void end(const v1::JobReport& ending) = 0;
-    /// Deletes what was stored of the result, because there was no room for more. The job must then wait until has_room(). `run`: how long
-    /// it ran. Throws: Error if there can never be enough room.
+    /// Deletes the stored part of the result, because the rest did not fit. The job must then wait until has_room() returns true.
+    /// `run`: how long the job ran. Throws: Error if the result can never fit.
     virtual void wait_for_room(const NoRoomError& why, std::chrono::duration<double> run) = 0;
-    /// Returns whether the job may run, as far as room for its result is concerned.
+    /// Returns whether the disk and the limit on state have enough room for the job's result.
     virtual bool has_room() = 0;
     /// Runs `task` soon on the thread of the disk queue, where it may wait for disks.
     virtual void run_on_disk_queue(std::function<void()> task) = 0;

@@ -14,12 +14,12 @@ namespace octopair::service {
 
 namespace {
 
-/// How soon a job that waits for memory asks again: nothing signals that memory was given back.
+/// Interval at which a thread checks again whether a waiting job can get memory. Freed memory sends no notification.
 constexpr std::chrono::milliseconds ask_again(20);
 
-/// Work of the smallest job, in objects: taking and answering it costs as much.
+/// Minimum estimate of a job's work, in objects: receiving and answering a job costs as much as a search of 1000 objects.
 constexpr std::uint64_t min_work = 1000;
-/// Objects of few pairs that a thread searches in a second. With it, the time that a job took becomes work in objects.
+/// Number of objects with few pairs that one thread searches in a second. Converts the run time of a job to work in objects.
 constexpr double objects_per_second = 2e7;
 
 /// Returns the estimated work of a job, in objects.
@@ -76,7 +76,8 @@ void JobScheduler::run_next(Lane& lane, KeptEngine& engine, const std::shared_pt
     if (again) lane.queue.add(job);
 }
 
-/// Gives back memory, because the thread of `engine` had nothing to do for a while. An engine that an upload uses is made anew later.
+/// Frees the memory that `engine` keeps, by making the engine anew. Called when the engine's thread had no job for a while. An engine
+/// that an upload uses is left unchanged, and made anew after a later idle time.
 void JobScheduler::renew_idle(Lane& lane, KeptEngine& engine) {
     const bool is_large = &lane == &large_;
     try {

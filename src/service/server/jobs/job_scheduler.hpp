@@ -60,12 +60,12 @@ private:
     const unsigned width_;
     std::mutex mutex_;
     std::shared_ptr<Engine> engine_;
-    bool was_used_ = false;  // since it was made
+    bool was_used_ = false;  // true if use() was called since the engine was made
 };
 
 class ServerJob;
 
-/// Up to here one thread is as fast as several, and starts sooner.
+/// Maximum number of objects of a small job. Up to this size one thread searches as fast as several, and starts sooner.
 inline constexpr std::uint64_t max_small_objects = 20000;
 inline constexpr std::uint64_t max_instant_objects = 2000;
 
@@ -81,26 +81,27 @@ public:
     };
     struct Makers {
         const EngineMaker &large, &small;  ///< make the engine for large jobs, and those for small and instant ones
-        bool tells_clients_apart = false;  ///< one client may not have all engines of small jobs
-        bool renewable = false;            ///< making an engine is cheap: it starts no processes and talks to no ranks
-        /// Called when no large job has waited for `idle_before_renewal` and some job has ended, on the thread of large jobs. May be empty.
+        bool tells_clients_apart = false;  ///< true: one client may not use all engines of small jobs
+        bool renewable = false;            ///< true: making an engine is cheap (no worker processes, no ranks)
+        /// Called on the thread of large jobs after `idle_before_renewal` without a large job, if any job has ended since the last call.
+        /// May be empty.
         std::function<void()> on_idle = {};
     };
     JobScheduler(const Makers& makers, const Widths& widths);
     JobScheduler(const JobScheduler&) = delete;
     JobScheduler& operator=(const JobScheduler&) = delete;
-    /// Waits for the jobs that run. Jobs that wait do not run any more.
+    /// Waits for the running jobs. Jobs in the queues never run.
     ~JobScheduler();
 
     /// Returns an engine that allocates the input of a job with `objects` objects.
     std::shared_ptr<Engine> engine_for(std::uint64_t objects);
     /// Requires: `job` is in state queued. It may have ended on return.
     void add(std::shared_ptr<ServerJob> job);
-    /// From now on no detached job starts: those that wait are left to the next server.
+    /// Prevents detached jobs from starting. The next server on this state folder runs the waiting detached jobs.
     void hold_detached() { holds_detached_ = true; }
 
-    /// Returns the number of waiting jobs that were added before `job`; 0 if it does not wait. Jobs of other clients may run first, or
-    /// later than it.
+    /// Returns the number of waiting jobs that were added before `job`; 0 if `job` does not wait. The order of running may differ, because
+    /// clients take turns.
     std::uint64_t queued_before(const ServerJob& job) const;
     std::uint64_t waiting() const { return small_.queue.waiting() + large_.queue.waiting(); }
     /// Returns the sum of value(engine) over all engines but the instant ones.
@@ -133,8 +134,8 @@ private:
     Lane small_, large_;
     std::atomic<bool> holds_detached_ = false;
     std::atomic<std::uint64_t> ended_ = 0;  // number of jobs that have run
-    std::uint64_t cleaned_after_ = 0;       // value of ended_ at the last on_idle_(); used by the thread of large jobs
-    std::vector<std::unique_ptr<KeptEngine>> engines_;  // the one for large jobs first
+    std::uint64_t cleaned_after_ = 0;       // value of ended_ at the last on_idle_(); only for the thread of large jobs
+    std::vector<std::unique_ptr<KeptEngine>> engines_;  // the engine for large jobs, then the engines for small jobs
     std::vector<Instant> instant_;
     std::vector<std::jthread> threads_;
 };

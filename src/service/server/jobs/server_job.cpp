@@ -13,8 +13,8 @@ namespace octopair::service {
 
 namespace {
 
-/// Returns the message without the folders of an absolute path, because clients receive it. Folders may have spaces in their names: all text
-/// from the first path to the last slash is left out.
+/// Returns the message without the folders of absolute paths, because clients must not see them. Removes all text from the first
+/// path to the last slash, because names of folders may contain spaces.
 std::string without_folders(const std::string& message) {
     const std::size_t first = message.starts_with('/') ? 0 : message.find(" /");
     if (first == std::string::npos) return message;
@@ -141,7 +141,7 @@ void ServerJob::end_done(const Summary& summary) {
     set_ended(v1::DONE);
 }
 
-/// Returns the report that later servers give about the ended job.
+/// Returns the report about the ended job, as the record stores it for servers that start later.
 v1::JobReport ServerJob::ending(v1::JobState state, const v1::Failure& failure) const {
     v1::JobReport last = report();
     last.set_state(state);
@@ -214,7 +214,7 @@ void ServerJob::end_early(const Ending& why) {
     parts_.record->run_on_disk_queue([self = shared_from_this()] { self->end_in_queue(); });
 }
 
-/// Ends a job that has not run, as `early_` says.
+/// Ends a job that is not running: failed if `early_` holds a failure, otherwise cancelled.
 void ServerJob::end_in_queue() {
     const v1::JobState state = *early_ ? v1::FAILED : v1::CANCELLED;
     if (detached()) store_ending(ending(state, early_->value_or(v1::Failure())));
@@ -331,7 +331,7 @@ void ServerJob::notify_watchers() noexcept {
     for (const auto& weak : watchers) {
         if (const auto watcher = weak.lock()) watcher->job_changed();
     }
-    // Called after the watchers, because nothing waits for this callback.
+    // The log callback comes after the watchers: clients wait for the watchers, but nobody waits for the log.
     if (from != to && parts_.on_state_change) parts_.on_state_change(*this, from, to);
 }
 

@@ -79,8 +79,8 @@ public:
     enum class Ran : std::uint8_t { ended, queued_again };
     /// Runs the job on the calling thread and ends it, or puts it back into the state queued if there is no room for its result.
     Ran run(const std::shared_ptr<Engine>& engine) noexcept;
-    /// Stops the job without an ending, so that the next server runs it. Has no effect on a job that was cancelled or failed
-    /// before.
+    /// Stops the job without storing an ending, so that the next server runs the job again. Has no effect on a job that has ended, or that
+    /// cancel() or fail() is ending.
     void abandon();
 
     /// Ends the job as soon as possible, cancelled or failed for the given reason. Thread safety: this and all members below
@@ -135,7 +135,7 @@ private:
     v1::JobState reported_state_ = v1::UPLOADING;  // state that on_state_change was last called with
     std::optional<Ending> early_;
     bool abandoned_ = false;
-    bool needs_room_ = false;  // it has no room for its result, and is queued again
+    bool needs_room_ = false;  // the result did not fit on the disk, and the job is queued again
     std::string hash_;
     std::uint32_t algorithm_ = algorithm_version;
     v1::Summary summary_;

@@ -34,8 +34,8 @@ void check_fits(std::span<const std::byte> data, std::uint64_t missing);
 
 class UploadedInput final : public InputTarget {
 public:
-    /// Allocates the arrays that `spec` describes, in memory of `engine`. Box arrays come from `array_pool`, if given, and
-    /// return to it at the end. Requires: `spec` was checked. Throws: Error.
+    /// Allocates the arrays that `spec` describes, in memory of `engine`. If `array_pool` is given, box arrays come from this pool, and the
+    /// destructor returns them. Requires: check(spec) has passed. Throws: Error.
     UploadedInput(const v1::JobSpec& spec, std::shared_ptr<Engine> engine, ArrayPool* array_pool = nullptr);
     UploadedInput(const UploadedInput&) = delete;
     UploadedInput& operator=(const UploadedInput&) = delete;
@@ -44,7 +44,7 @@ public:
     void append(std::span<const std::byte> data) override;
     std::uint64_t missing() const override { return missing_; }
 
-    /// The returned spans are valid as long as this object.
+    /// Returns the objects of both sets. The spans point into this object.
     Input objects() const { return {sets_[0].objects, joined_ ? std::optional(sets_[1].objects) : std::nullopt}; }
     /// Returns the hash of input and options. Requires: the input is complete.
     std::string hash() const { return hash_.digest(); }
@@ -67,7 +67,7 @@ private:
     JobHash hash_;
     std::array<std::span<std::byte>, 4> arrays_;  // unfilled parts of the arrays: boxes and paddings of both sets
     std::size_t array_ = 0;      // index of the array being filled; arrays_[array_] is its unfilled part
-    std::uint64_t missing_ = 0;  // bytes
+    std::uint64_t missing_ = 0;  // bytes of the input that were not appended yet
 };
 
 }  // namespace octopair::service

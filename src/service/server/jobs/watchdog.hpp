@@ -35,7 +35,7 @@ public:
     /// Checks `watched` until it is destroyed or is_over().
     void watch(const std::shared_ptr<Watched>& watched);
 
-    /// Returns how often the objects were checked.
+    /// Returns the number of rounds of checks so far.
     std::uint64_t beats() const { return beats_; }
 
 private:

@@ -24,7 +24,8 @@ namespace {
 /// Separates the message of a line from its fields, a JSON object, in the payload of a log line.
 constexpr char border = '\x1f';
 
-/// Source name that marks a log line as one with fields. The text cannot be used for this: clients may control parts of it.
+/// Name that marks a log line with fields, in spdlog's member `source`. A mark in the text would not be safe: clients control parts of
+/// the text.
 constexpr const char* origin = "fields";
 
 spdlog::level::level_enum spdlog_level(LogLevel level) {

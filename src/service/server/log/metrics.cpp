@@ -25,7 +25,7 @@ using prometheus::Counter;
 using prometheus::Family;
 using prometheus::Gauge;
 
-/// In the order of v1::JobState.
+/// Names of the states before the end, indexed by v1::JobState.
 constexpr std::array<const char*, 3> states = {"uploading", "queued", "running"};
 constexpr std::array<const char*, 3> outcomes = {"done", "failed", "cancelled"};
 constexpr std::array<const char*, 4> steps = {"encode", "count", "scatter", "scan"};
@@ -189,7 +189,7 @@ void Metrics::sent(std::uint64_t bytes) { store_->sent.Increment(double(bytes));
 int Metrics::show(const Address& address, std::function<Levels()> levels) {
     const std::string where = numeric(address);
     try {
-        // With these numbers, connections that send nothing do not keep others waiting: each has a thread, for at most 2 s.
+        // Each connection has a thread of its own for at most 2 s, so connections that send nothing do not delay other connections.
         store_->exposer = std::make_unique<prometheus::Exposer>(
             std::vector<std::string>{"listening_ports", where, "num_threads", "16", "request_timeout_ms", "2000"});
     } catch (const std::exception&) {  // an exception of civetweb, which gives no reason

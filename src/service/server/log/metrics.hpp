@@ -16,7 +16,7 @@ enum JobState : int;
 
 namespace octopair::service {
 
-/// Values that are read at each HTTP request.
+/// Gauges that the server computes at each HTTP request.
 struct Levels {
     std::uint64_t queue = 0, connections = 0, connections_refused = 0, memory_bytes = 0, worker_faults = 0;
 };
@@ -35,16 +35,16 @@ public:
     void job_started(double queue_seconds);
     /// Counts an ended job. `seconds`: run time of the job; 0: it did not run.
     void job_ended(const v1::JobReport& report, double seconds);
-    /// Counts a refusal. `limit`: name of the limit that was exceeded.
+    /// Counts a request that exceeded a limit. `limit`: name of this limit.
     void refused(const std::string& limit);
     struct ClientJob {
         double seconds = 0;
         std::uint64_t bytes = 0;  ///< size of the input
         std::uint64_t pairs = 0;
     };
-    /// Counts an ended job of a client. The first 50 clients are counted each, further ones together, as "other".
+    /// Counts an ended job of a client. Each of the first 50 clients has its own counters. All further clients share the counters "other".
     void client_job_ended(const std::string& client, const ClientJob& job);
-    /// Counts a refusal of a client beyond a limit.
+    /// Counts a request of this client that exceeded a limit.
     void client_refused(const std::string& client);
     /// Counts a refused call. `reason`: "unauthenticated", "not permitted" or "going down".
     void call_refused(const std::string& reason);

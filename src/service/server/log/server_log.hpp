@@ -22,12 +22,12 @@ class Status;
 
 namespace octopair::service {
 
-/// Lets one line of the log a second pass for each key, and counts the lines between. Thread safety: any thread may call it.
+/// Limits the log to one line a second for each key, and counts the omitted lines. Thread safety: any thread may call it.
 class Throttle {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Returns the number of lines of this key that were left out since its last line, or nothing if this line is left out as well.
+    /// Returns nothing if the log must omit this line. Otherwise returns the number of omitted lines since the last line with this key.
     std::optional<std::uint64_t> pass(const std::string& key, Clock::time_point now = Clock::now()) {
         constexpr std::chrono::seconds apart(1);
         constexpr std::size_t most = 1000;
@@ -66,7 +66,7 @@ struct Asker {
 /// The part of a result that a call sent.
 struct Sent {
     std::uint64_t offset = 0, bytes = 0;
-    std::string outcome;  ///< "complete", or why the call ended before
+    std::string outcome;  ///< "complete", or the reason why the call ended early
 };
 
 /// Thread safety: any thread may call it.
@@ -76,20 +76,20 @@ public:
 
     /// Records a change of state of a job. `from`: empty for a new job.
     void job_state_changed(const ServerJob& job, std::optional<v1::JobState> from, v1::JobState to);
-    /// Records that an attached job was received by `call`, or that a detached one is on the disk.
+    /// Records that `call` received an attached job, or stored a detached job on the disk.
     void job_submitted(const ServerJob& job, const grpc::ServerContextBase& call);
     /// Records a call about a job. `call`: "cancel" or "release".
     void job_asked(const char* call, const ServerJob& job, const Asker& asker);
     /// Records the end of a call that sent the result of a detached job, from pair `offset` on. `bytes`: size of its messages.
     void result_sent(const ServerJob& job, const Asker& asker, const Sent& sent);
-    /// Records a request that exceeded a limit. At most one line a second for each client; the next line says how many were left out.
+    /// Records a request that exceeded a limit. At most one line a second for each client; the next line has the number of omitted lines.
     void limit_refused(const std::string& client, const LimitError& error);
     /// Records refused connections. `allowed`: limit of connections. `refused`: number of connections refused since the start.
     void connections_refused(std::uint64_t allowed, std::uint64_t refused);
     /// Records a connection. `client`: client of its first call; empty: not known yet.
     void connected(const std::string& peer, const std::string& client);
-    /// Records a call that was not admitted. The client is empty unless it is authenticated. At most one line a second for all others, and
-    /// one for each authenticated client; the next line says how many were left out.
+    /// Records a call that was not admitted. The client of `asker` is empty unless it is authenticated. At most one line a second for each
+    /// authenticated client, and for all other callers together. The next line has the number of omitted lines.
     void call_refused(const Asker& asker, const grpc::Status& why);
     /// Records a call that was admitted, but made no job. At most one line a second for each client.
     void call_failed(const Asker& asker, const grpc::Status& why);

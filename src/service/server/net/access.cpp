@@ -16,7 +16,7 @@ namespace octopair::service {
 namespace {
 
 constexpr std::string_view bearer = "bearer ";
-const std::string token_client = "token:";  // begin of the name of a client with a token
+const std::string token_client = "token:";  // prefix of the names of clients with tokens
 
 /// Returns whether credentials have the scheme Bearer, in any case (RFC 9110).
 bool is_bearer(std::string_view credentials) {

@@ -35,7 +35,7 @@ public:
     };
     /// Reads the files again. Throws: as the constructor.
     std::shared_ptr<const Files> read() const;
-    /// Uses files that read() returned for calls that are admitted later. Thread safety: any thread may call it.
+    /// Replaces the tokens and roles in use by `files`, which read() returned. Thread safety: any thread may call it.
     void use(std::shared_ptr<const Files> files);
     /// Returns the clients "token:NAME" of the role file for which no token has this name. Thread safety: any thread may call it.
     std::vector<std::string> clients_without_token() const;

@@ -71,7 +71,7 @@ void process_insecure(void* listener, grpc_auth_context* context, const grpc_met
     done(call, nullptr, 0, nullptr, 0, good ? GRPC_STATUS_OK : GRPC_STATUS_UNAVAILABLE, good ? nullptr : refusal);
 }
 
-/// Lives as long as a call.
+/// Counts the end of a call in its destructor. gRPC makes one for each call, and destroys it with the call.
 class CountedCall final : public grpc::experimental::Interceptor {
 public:
     CountedCall(grpc::experimental::ServerRpcInfo& call, Listener& listener)

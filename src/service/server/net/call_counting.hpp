@@ -1,8 +1,8 @@
 // CallCounting: counts the calls of each connection, so that the listener can cut a connection that resets too many.
 //
-// gRPC reads a connection on a thread for as long as data comes. Only then the thread handles the calls that it has read. So a flood of
-// calls that are reset would fill the memory before a handler runs. The begin of a call is therefore counted where gRPC authenticates it:
-// on the thread that reads. The end is counted where gRPC frees the call (an interceptor).
+// A thread of gRPC reads a connection as long as data arrive, and starts the handlers of the calls afterwards. So a client that starts
+// and resets many calls would fill the memory before any handler runs. Therefore the authentication, which runs on the reading thread,
+// counts the begin of each call. An interceptor counts the end, when gRPC frees the call.
 #pragma once
 
 #include <grpc/grpc_security.h>
@@ -28,9 +28,9 @@ public:
 
     /// Returns credentials that count the calls of a server which needs no TLS.
     std::shared_ptr<grpc::ServerCredentials> insecure_credentials();
-    /// Makes credentials of TLS count calls.
+    /// Adds a processor to TLS credentials that counts the begins of calls.
     void count_in(grpc::ServerCredentials& credentials);
-    /// Returns what counts the ends of calls.
+    /// Returns factories of interceptors that count the ends of calls.
     std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors();
 
     /// Returns the number of the connection of a call (ConnectionWatch::note_begin).

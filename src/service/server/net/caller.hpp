@@ -4,7 +4,7 @@
 //   owner      yes       yes                  its own      its own       own     own      no
 //   reader     yes       no                   one owner's  one owner's   no      no       no
 //   operator   yes       no                   all          no            all     no       yes
-// Who sees jobs lists the scenes of the same owners, and who reads results watches these scenes.
+// A caller that may see an owner's jobs may also list the owner's scenes. A caller that may read the results may watch the scenes.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ namespace {
 
 struct Received {
     bool open = false;
-    std::uint64_t bytes = 0;  ///< 0 if the system does not tell
+    std::uint64_t bytes = 0;  ///< bytes received so far; 0 if the system does not report them
 };
 
 /// Reads TCP_INFO. Its bytes are at a fixed place of the system's interface (linux/tcp.h), which glibc's struct tcp_info lacks.
@@ -58,7 +58,7 @@ std::vector<Descriptor> ConnectionWatch::take_ready(Clock::time_point now) {
         Descriptor copy(::fcntl(connection.number, F_DUPFD_CLOEXEC, 0));
         ready.push_back(std::exchange(connection.connection, std::move(copy)));
     }
-    // Without descriptors for copies nothing can be watched; the limit on connections still holds.
+    // A connection whose descriptor cannot be copied (too many open files) is not watched. The limit on connections still holds.
     std::erase_if(unknown_, [](const Unknown& connection) { return !connection.connection.open(); });
     return ready;
 }
@@ -68,7 +68,8 @@ std::size_t ConnectionWatch::waiting() const {
         std::count_if(unknown_.begin(), unknown_.end(), [](const Unknown& one) { return one.number < 0; }));
 }
 
-/// Returns whether a connection of the address must wait. If not, it is handed on now.
+/// Returns whether a connection of the address must wait. If false, the caller hands the connection on now. On a paced address, the next
+/// connection must then wait for an interval.
 bool ConnectionWatch::must_wait(const std::string& address, Clock::time_point now) {
     const auto found = paced_.find(address);
     if (found == paced_.end()) return false;
@@ -83,7 +84,7 @@ bool ConnectionWatch::is_full(const std::string& address) const {
     const auto same = std::uint64_t(std::count_if(unknown_.begin(), unknown_.end(), [&](const Unknown& connection) {
         return connection.peer.address == address;
     }));
-    constexpr std::uint64_t at_least = 4;  // clients that connect at the same time
+    constexpr std::uint64_t at_least = 4;  // also under small limits, a few clients may connect at the same time
     return unknown_.size() >= std::max(at_least, most / 2) || same >= std::max(at_least, most / 8);
 }
 
@@ -170,7 +171,7 @@ void ConnectionWatch::note_end(std::uint64_t number, bool reset, Clock::time_poi
     found->second.open.count = std::max(0.0, found->second.open.count - 1);
     if (!reset) return;
     const auto known = known_.find(number);
-    // The end of a connection resets all its calls.
+    // A connection that ends resets all its calls. Do not count these resets against the client.
     if (known == known_.end() || !known->second.is_open() || !received_by(known->second.descriptor).open) return;
     Recent& of_client = resets_[known->second.client];
     add(of_client, limits_.resets_per_second, now);
@@ -188,7 +189,7 @@ void ConnectionWatch::add(Recent& recent, double per_second, Clock::time_point n
 void ConnectionWatch::cut_known(std::uint64_t number, Clock::time_point now) {
     const auto found = known_.find(number);
     if (found == known_.end()) return;
-    // gRPC may close the connection meanwhile, and its number may be used again. A copy still refers to this connection.
+    // gRPC may close the connection at any time, and the system may reuse its descriptor. Only a copy surely stays on this connection.
     const Descriptor copy(::fcntl(found->second.descriptor, F_DUPFD_CLOEXEC, 0));
     if (copy.open() && socket_of(copy.number()) == found->second.socket) {
         reset(copy.number());

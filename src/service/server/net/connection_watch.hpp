@@ -1,6 +1,7 @@
-// ConnectionWatch: which connections of a TCP listener are cut before a client has shown who it is, and how many each client has.
+// ConnectionWatch: limits on the connections of a TCP listener. It cuts connections whose client is not known yet, and counts the
+// connections and resets of known clients.
 //
-// A connection is known after its first call that the server admits. Until then it may be anybody's, so it is bounded:
+// A connection becomes known when the server admits its first call. An unknown connection may be of an attacker, so it is limited:
 //   - in time: at most `greeting` from its start;
 //   - in bytes received: at most `max_bytes`. An endless header, for example, would cost the server much time (CVE-2023-33953). So the
 //     first call of a connection must be small; Describe is;
@@ -10,9 +11,9 @@
 // A known connection counts for the client of its first call, until it is closed. It is bounded in calls that it resets (CVE-2023-44487):
 //   - `max_open_calls`: calls that have begun and not ended. HTTP/2 permits fewer streams; the others were reset, and the server has not
 //     dealt with that yet;
-//   - `max_resets`: calls of a client that ended by a reset lately. A connection with at most
-//     `tolerated_resets` of them is not cut for those of others.
-// After such a cut the client's new connections are cut at their first call, for a `pause`.
+//   - `max_resets`: calls of a client that recently ended by a reset, on all its connections together. A connection with at most
+//     `tolerated_resets` resets is not cut for the resets of other connections.
+// After such a cut, the server cuts new connections of this client at their first call, for the time `pause`.
 //
 // After a connection was cut for its bytes or calls, new connections of its address wait. They are handed on one by one, with an
 // interval between them. Otherwise a stranger could connect again at once and cost as much time again. No address is refused, because
@@ -40,11 +41,11 @@ struct ConnectionLimits {
     std::uint64_t max_bytes = 128 << 10;
     std::uint64_t max_refused_calls = 32;
     double max_open_calls = 512, forgotten_per_second = 5;
-    double max_resets = 256, resets_per_second = 50;  ///< at once, and then
-    double tolerated_resets = 16;                     ///< of a connection
+    double max_resets = 256, resets_per_second = 50;  ///< of a client: resets at once, and allowed rate afterwards
+    double tolerated_resets = 16;                     ///< recent resets for which a connection is never cut
     std::chrono::milliseconds pause{1000};
-    std::chrono::milliseconds interval{50};        ///< between waiting connections of one address
-    std::chrono::milliseconds remembered{10'000};  ///< after a cut: time in which new connections wait
+    std::chrono::milliseconds interval{50};        ///< between handing on two waiting connections of one address
+    std::chrono::milliseconds remembered{10'000};  ///< how long, after a cut, new connections of the address wait
 };
 
 /// Thread safety: none; the caller locks.
@@ -54,7 +55,7 @@ public:
 
     explicit ConnectionWatch(const ConnectionLimits& limits) : limits_(limits) {}
 
-    /// The other end of a connection.
+    /// The client's end of a connection.
     struct Peer {
         std::string name;  ///< as gRPC writes it, for example "ipv4:192.0.2.1:4711"
         std::string
@@ -67,27 +68,27 @@ public:
     enum class Admission : std::uint8_t { known_before, known_now, too_many, paused };
     struct Client {
         std::string name;
-        std::uint64_t connection;  ///< its number in note_begin()
+        std::uint64_t connection;  ///< number of the connection in note_begin()
     };
-    /// Notes that `client` makes a call on the connection of a peer. A connection that is not known yet becomes known and is not watched
-    /// any longer, unless the client has too many already. If the client pauses, the connection is cut.
+    /// Records that `client` makes an admitted call on the connection of the peer `name`. An unknown connection becomes known, unless the
+    /// client has max_per_client known connections (too_many). During the client's pause the connection is cut (paused).
     Admission make_known(const std::string& name, const Client& client, Clock::time_point now);
-    /// Notes that a call begins on the connection with this number. Numbers are not used again. Returns false to refuse the call.
+    /// Records that a call begins on a connection. Returns false if the call must be refused. `number`: unique number of the connection.
     bool note_begin(std::uint64_t number, Clock::time_point now);
-    /// Notes that a call ends. `reset`: the client has ended it.
+    /// Records that a call ends. `reset`: the client has reset the call.
     void note_end(std::uint64_t number, bool reset, Clock::time_point now);
-    /// Notes that a call of a peer was refused, because the server does not know who makes it.
+    /// Records that a call of a peer was refused because the caller is not authenticated.
     void note_refused(const std::string& name, Clock::time_point now);
     /// Cuts the connections whose time or bytes are used up. Returns the number of connections cut since the last call.
     std::uint64_t check(Clock::time_point now);
 
     std::size_t unknown() const { return unknown_.size(); }  ///< number of connections that are not known yet
-    std::size_t waiting() const;                             ///< number of those that wait
+    std::size_t waiting() const;  ///< number of unknown connections that wait for take_ready()
 
 private:
     struct Unknown {
         Descriptor connection;  // after handing on, a copy: its number cannot be reused for another connection
-        int number = -1;        // the descriptor that was handed on; -1: the connection waits
+        int number = -1;        // number of the descriptor that was handed on; -1: the connection waits
         Peer peer;
         Clock::time_point since;  // begin of waiting, or time of handing on
         std::uint64_t refused_calls = 0;
@@ -101,21 +102,21 @@ private:
 
     struct Known {
         std::string address;
-        int descriptor;  // gRPC's
-        ino_t socket;    // shows whether the descriptor is still of this connection
+        int descriptor;  // gRPC owns the descriptor
+        ino_t socket;    // inode; if the descriptor has another inode, gRPC has closed this connection
         std::string client;
 
         bool is_open() const;
     };
 
-    /// Number of recent events, which shrinks with time.
+    /// Leaky counter of recent events: the count decreases with time (add()).
     struct Recent {
         double count = 0;
         Clock::time_point since;
     };
 
-    /// The calls of a connection. gRPC ends some calls without telling, for example those with a message that is too large. So open calls
-    /// are forgotten with time, as resets are, but more slowly.
+    /// Counters of a connection's calls. For some calls, such as calls with a message that is too large, gRPC reports no end. So the count
+    /// of open calls decreases with time, too, but more slowly than the count of resets.
     struct Calls {
         Recent open, resets;
     };
@@ -136,7 +137,7 @@ private:
     // By number. Entries of closed connections are removed by forget_closed().
     std::unordered_map<std::uint64_t, Known> known_;
     std::unordered_map<std::uint64_t, Calls> calls_;
-    std::size_t forget_from_ = 64;  // number of entries from which on it is called
+    std::size_t forget_from_ = 64;  // size of calls_ at which note_begin() calls forget_closed()
     // Entries are removed after `remembered`.
     std::map<std::string, Recent> resets_;             // by client
     std::map<std::string, Clock::time_point> paused_;  // by client: until when

@@ -30,7 +30,7 @@ public:
     void reload();
 
 private:
-    /// A file in memory, which gRPC reads again each second.
+    /// A file in memory that holds a copy of a file of `tls`. gRPC reads the copy again each second.
     class Copy {
     public:
         Copy();

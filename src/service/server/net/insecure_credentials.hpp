@@ -15,14 +15,14 @@
 
 namespace octopair::service {
 
-/// Returns credentials in C, which the caller releases, with a processor.
+/// Returns credentials of gRPC's C interface that call `processor` at the begin of each call. The caller must release them.
 inline grpc_server_credentials* make_insecure_credentials(const grpc_auth_metadata_processor& processor) {
     grpc_server_credentials* const credentials = grpc_insecure_server_credentials_create();
     grpc_server_credentials_set_auth_metadata_processor(credentials, processor);
     return credentials;
 }
 
-/// Finds out whether `Base`, a version of grpc::ServerCredentials, owns credentials in C.
+/// Detects whether `Base` (grpc::ServerCredentials) is of a version that owns credentials of gRPC's C interface.
 template <typename Base>
 class CredentialsForm : public Base {
 public:
@@ -31,7 +31,7 @@ public:
     }
 };
 
-/// The form of gRPC 1.51.
+/// Insecure credentials for gRPC 1.51.
 template <typename Base, bool owns_credentials = CredentialsForm<Base>::owns_credentials()>
 class InsecureCredentials final : public Base {
 public:
@@ -50,7 +50,7 @@ private:
     grpc_auth_metadata_processor processor_;
 };
 
-/// The form of later versions.
+/// Insecure credentials for later versions of gRPC.
 template <typename Base>
 class InsecureCredentials<Base, true> final : public Base {
 public:

@@ -30,7 +30,7 @@ namespace {
 constexpr int backlog = 1024;
 constexpr std::chrono::seconds check_interval(1);        // between checks for closed connections, and between log lines
 constexpr std::chrono::milliseconds watch_interval(50);  // between checks of connections without an admitted call
-constexpr std::chrono::milliseconds refusal_delay(250);  // to sending the reason, and from there to closing
+constexpr std::chrono::milliseconds refusal_delay(250);  // from a refusal to its reason, and from the reason to closing
 constexpr std::size_t max_refused_open = 64;             // refused connections that are not closed yet
 constexpr std::size_t max_spares = 8;                    // descriptors reserved for refusing connections
 
@@ -103,7 +103,7 @@ Listener::~Listener() {
     if (is_own) ::unlink(address_.path.c_str());
 }
 
-/// Takes the lock, then replaces a socket at the path. While the lock was free, the server of that socket was dead.
+/// Takes the lock file, then replaces an old socket at the path. The lock was free, so the server of the old socket has ended.
 void Listener::bind_unix() {
     (void)socket_exists(address_);
     const std::string lock = address_.path + ".lock";
@@ -207,7 +207,7 @@ void Listener::accept_connections() {
     }
 }
 
-/// Refuses one connection when the process has no descriptors left. While no spare descriptor is free, new connections wait.
+/// Refuses one connection when the process has no descriptors left, with a spare descriptor. Without a spare, the connection waits.
 void Listener::refuse_one_more() {
     if (spares_.empty()) return;
     spares_.pop_back();
@@ -260,7 +260,7 @@ void Listener::watch(Descriptor connection) {
     hand_on_ready();
 }
 
-/// Hands the watched connections on that need not wait any longer.
+/// Passes the connections whose wait is over (ConnectionWatch) to gRPC.
 void Listener::hand_on_ready() {
     std::vector<Descriptor> ready;
     {
@@ -362,7 +362,7 @@ void Listener::refuse(Descriptor connection, std::string why) {
 
 void Listener::send_refusal(Refused& refused) const {
     if (std::exchange(refused.reason_sent, true)) return;
-    // Read the client's greeting, which is short: closing with unread data would reset the connection and discard the reason.
+    // Read what the client has sent so far. Closing with unread data would reset the connection, and the client would lose the reason.
     std::array<char, 1 << 16> said;
     (void)::recv(refused.connection.number(), said.data(), said.size(), MSG_DONTWAIT);
     if (!options_.encrypted) send(refused.connection, goaway("octopair: " + refused.why));

@@ -37,17 +37,17 @@ struct ListenerOptions {
 
 class Listener {
 public:
-    /// Binds to `address`. Only its owner may use a Unix socket; a lock file lies beside it, and the socket of a dead server is
-    /// replaced.
-    /// `passed`: a listening socket that is used instead, or null. Its maker keeps a copy: it is not removed at the end, and clients that
-    /// connect before the next server starts wait.
+    /// Binds to `address`. Only the owner of a Unix socket may connect. A lock file beside the socket shows whether its server still runs;
+    /// the socket of a dead server is replaced.
+    /// `passed`: a listening socket to use instead of `address`, or null. The program that made the socket keeps a copy. So the destructor
+    /// does not remove the socket, and clients that connect between two servers wait.
     /// `unprotected`: result of missing_protection().
     /// Throws: Error{usage} with `unprotected`, unless empty, for an address that is not loopback; Error{io_failed} if binding
     /// fails.
     Listener(const Address& address, const std::shared_ptr<Descriptor>& passed, const std::string& unprotected);
     Listener(const Listener&) = delete;
     Listener& operator=(const Listener&) = delete;
-    /// Stops, and removes the Unix socket, unless another one has taken its place.
+    /// Stops accepting. Removes the Unix socket, unless another server has replaced the socket.
     ~Listener();
 
     /// Returns the address, with the port that the system chose if port 0 was given.
@@ -57,14 +57,14 @@ public:
     void start(ListenerOptions options);
     /// Stops accepting connections.
     void stop();
-    /// Notes that `client` makes a call from this peer (ConnectionWatch). Thread safety: any thread may call it.
+    /// Calls ConnectionWatch::make_known(). Thread safety: any thread may call it.
     ConnectionWatch::Admission make_known(const std::string& peer, const ConnectionWatch::Client& client);
-    /// Note that a call begins or ends (ConnectionWatch). Thread safety: any thread may call it.
+    /// Call ConnectionWatch::note_begin() and note_end(). Thread safety: any thread may call them.
     bool note_begin(std::uint64_t number);
     void note_end(std::uint64_t number, bool reset);
-    /// Notes that a call from this peer was refused, because the server does not know who makes it. Thread safety: any thread may call it.
+    /// Calls ConnectionWatch::note_refused(). Thread safety: any thread may call it.
     void note_refused(const std::string& peer);
-    /// Returns whether connections wait for that. Thread safety: any thread may call it.
+    /// Returns whether there are connections without an admitted call. Thread safety: any thread may call it.
     bool awaits_calls() const { return unknown_ > 0; }
     std::uint64_t connections() const { return connections_; }
     /// Returns the number of connections that were refused or cut.
@@ -77,9 +77,8 @@ private:
         ino_t socket;
     };
 
-    /// A connection beyond the limit. The reason is sent after a delay: otherwise the client's gRPC would reconnect thousands
-    /// of times a second. The connection is closed after another delay: closing at once would reset it before the client reads
-    /// the reason.
+    /// A connection beyond the limit. The listener sends the reason after a delay: otherwise the client's gRPC would reconnect thousands of
+    /// times a second. The listener closes the connection after another delay, so that the client can read the reason first.
     struct Refused {
         Descriptor connection;
         std::string why;
@@ -110,7 +109,7 @@ private:
     ListenerOptions options_;
     Descriptor lock_, socket_, wake_;
     ino_t bound_ = 0;                 // inode of the Unix socket that this listener made
-    std::vector<Descriptor> spares_;  // reserved: freeing one allows to accept and refuse a connection
+    std::vector<Descriptor> spares_;  // reserve: closing one frees a descriptor to accept and refuse a connection
     std::vector<Accepted> accepted_;
     std::deque<Refused> refused_connections_;
     std::chrono::steady_clock::time_point last_report_;  // last call of options_.refused

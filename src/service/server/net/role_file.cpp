@@ -21,12 +21,12 @@ std::optional<Role> role_from(const std::string& name) {
     return {};
 }
 
-/// Thrown for a line that is not wholly understood.
+/// Thrown for a line with a syntax error.
 struct WrongLine {
     const char* why;
 };
 
-/// Throws: WrongLine unless `name` has the form of a name that access.hpp gives.
+/// Throws: WrongLine unless `name` has the form of a client's name (access.hpp).
 void check_client(std::string_view name) {
     constexpr std::array<std::string_view, 5> kinds = {
         "token:", "certificate:", "certificate-uri:", "certificate-email:", "certificate-dns:"};

@@ -35,7 +35,7 @@ bool has_form(std::string_view text, std::string_view form) {
                       [](char c, char f) { return f == '0' ? c >= '0' && c <= '9' : c == f; });
 }
 
-/// Returns the time that `text` gives in UTC, the end of the day for a date, or nothing if it is neither a date nor a time.
+/// Parses a time in UTC. A date means the end of this day. Returns nothing if `text` is neither a date nor a time.
 std::optional<Time> time_from(std::string_view text) {
     using namespace std::chrono;
     constexpr std::string_view date_form = "0000-00-00", time_form = "0000-00-00T00:00:00Z";
@@ -48,7 +48,7 @@ std::optional<Time> time_from(std::string_view text) {
     const year_month_day date{year(number(0, 4)), month(unsigned(number(5, 2))), day(unsigned(number(8, 2)))};
     if (!date.ok()) return {};
     if (date.year() > year(2261)) return Time::max();  // the last whole year that system_clock holds
-    if (date.year() < year(1970)) return Time::min();  // it holds none before 1678
+    if (date.year() < year(1970)) return Time::min();  // system_clock holds no year before 1678
     if (text.size() == date_form.size()) return sys_days(date) + days(1);
     const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
     if (hour > 23 || minute > 59 || second > 59) return {};
@@ -60,7 +60,7 @@ bool is_other_hash(std::string_view word) {
     constexpr std::size_t shortest_hash = 32;
     std::string name(word.substr(0, word.find_first_of(":=$")));
     std::ranges::transform(name, name.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-    const std::size_t last = word.find_last_not_of("0123456789abcdefABCDEF");  // before the digits at the end
+    const std::size_t last = word.find_last_not_of("0123456789abcdefABCDEF");  // last character before the hash digits
     const bool has_digits = word.size() - (last + 1) >= shortest_hash;
     if (name.starts_with("sha") && has_digits) return true;
     if (name.size() == word.size()) return false;

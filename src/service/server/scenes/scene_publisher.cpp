@@ -57,7 +57,7 @@ void ScenePublisher::publish(const Take& take) noexcept {
         }
         pass_on(std::move(receivers), std::move(snapshot), failure);
     } catch (...) {
-        // There is no memory, so the watchers get no answer until their time is over.
+        // Out of memory: the watchers get no answer, and their calls end at their time limit.
     }
     const Clock::duration pause = intervals_per_copy * (processor_time() - begin);
     next_time_ = Clock::now() + std::max<Clock::duration>(pause, min_interval);
@@ -74,7 +74,7 @@ void ScenePublisher::close() noexcept {
         }
         pass_on(std::move(receivers), nullptr, status_of(no_scene(id_)));
     } catch (...) {
-        // There is no memory, so the watchers get no answer until their time is over.
+        // Out of memory: the watchers get no answer, and their calls end at their time limit.
     }
 }
 

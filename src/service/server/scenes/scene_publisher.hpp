@@ -78,7 +78,7 @@ public:
 
     static constexpr std::size_t max_snapshots = 4;
     static constexpr std::chrono::milliseconds min_interval{20};
-    /// Reciprocal of the share of the time that copies take.
+    /// After a copy, the next copy waits this many times the processor time of the copy. So copies take at most 1% of the time.
     static constexpr int intervals_per_copy = 100;
 
     /// The scene of a publisher.
@@ -91,7 +91,7 @@ public:
     };
     struct Waiting {
         std::weak_ptr<SnapshotReceiver> receiver;
-        std::uint64_t after_step = 0;  ///< the receiver wants a later step
+        std::uint64_t after_step = 0;  ///< the receiver wants the state after a step with a greater number
         std::uint64_t pair_limit = 0;  ///< maximum number of pairs that the receiver wants
     };
     /// Copies the scene's state, with at most `pair_limit` pairs.
@@ -124,7 +124,7 @@ public:
 
     /// Returns the numbers of the last step. While a step ends, some may be those of the step before. The owner is not set.
     v1::SceneReport report() const;
-    /// Adds a receiver, which gets a snapshot or an error once. If a snapshot that fits exists, returns it instead.
+    /// Returns the latest snapshot if it fits `waiting`. Otherwise returns null, and the receiver later gets one snapshot or error.
     /// Throws: no_scene() after close().
     std::shared_ptr<const StepSnapshot> wait(Waiting waiting);
     /// Removes a receiver. No effect if it does not wait.
@@ -144,7 +144,7 @@ private:
 
     std::atomic<std::uint64_t> steps_ = 0, objects_ = 0, pairs_ = 0;
     std::atomic<double> seconds_ = 0;
-    /// A watcher waits for a step after this one. Greatest number: no watcher waits.
+    /// Number of a step: some watcher waits for a later step. Greatest number: no watcher waits.
     std::atomic<std::uint64_t> wanted_after_ = ~std::uint64_t(0);
 
     // Used by the scene's thread.

@@ -51,7 +51,7 @@ void ServerScene::make(const RecordedCall& call) {
     if (call.kind == RecordKind::remove) removed_ += call.ids.size();
 }
 
-/// Memory is needed for each index, even if no object has the index at the moment.
+/// Reserves memory for `objects` new objects. Every index takes memory, even while no object has the index.
 void ServerScene::make_room(std::uint64_t objects) {
     const std::uint64_t free = scene_.indices() - scene_.size() - removed_;
     const std::uint64_t fresh = objects - std::min(objects, free), all = scene_.indices() + fresh;

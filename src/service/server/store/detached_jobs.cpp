@@ -49,7 +49,7 @@ void remove_superseded(std::vector<StateFolder::Found>& jobs) {
     std::reverse(jobs.begin(), jobs.end());
 }
 
-/// Writes the new file. Returns the contents besides the input.
+/// Copies the job file `from` to `to`, with the algorithm version and the hash of this program. Returns the spec that was written.
 StoredSpec rewrite(const File& from, const File& to, const StoredSpec& old) {
     StoredSpec fresh = old;
     fresh.algorithm = algorithm_version;
@@ -130,7 +130,7 @@ void DetachedJobs::restore() {
              "detached jobs: " + std::to_string(queued) + " queued again, " + std::to_string(ended) + " have ended");
 }
 
-/// Lets a job that an older server did not run be run by this one. Returns why that fails.
+/// Converts a job of an older algorithm version that has no result (upgrade_job()). Returns the error if the conversion fails.
 std::optional<Error> DetachedJobs::upgrade(StateFolder::Found& found) const {
     try {
         const std::uint32_t before = found.stored.algorithm;

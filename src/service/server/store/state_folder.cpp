@@ -77,7 +77,8 @@ void StateFolder::lock() {
     fail_io(path, "cannot lock", errno);
 }
 
-/// Version 1 has no file `version`, and is otherwise as version 2.
+/// Throws if the folder has a newer version than this program. Otherwise writes the current version to the file `version`. Only this
+/// file differs between versions 1 and 2: version 1 has none.
 void StateFolder::check_version() const {
     constexpr std::uint64_t newest = 2;
     constexpr std::string_view before = "octopair state ";

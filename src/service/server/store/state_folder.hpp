@@ -85,7 +85,7 @@ public:
     struct DiskSpace {
         std::uint64_t total, free;  ///< bytes of the folder's disk, and those that this program may still use
     };
-    /// If the system does not tell, both are the greatest number.
+    /// Returns the space on the folder's disk. If the system does not report the space, both numbers are the greatest 64-bit number.
     DiskSpace disk_space() const;
     DiskQueue& disk_queue() { return disk_queue_; }
     spdlog::logger& log() { return *log_; }

@@ -66,8 +66,9 @@ void StoredJob::wait_for_room(const NoRoomError& why, std::chrono::duration<doub
         log_text(parts_.folder.log(), LogLevel::warning,
                  "job " + parts_.stored.spec.id() + ": waits for room for its result: " + why.what());
     }
-    // The result may need more than is known now, and a run that ends without room is lost work. So the pause is longer than most runs.
-    // If the room that was there did not suffice, something else is short, such as a quota: then each pause is longer than the last.
+    // A run that ends without enough room is lost work, and the next run may find more pairs than needed_bytes_ counts. So the pause is
+    // eight times as long as the run. If this run needed no more than the run before, free space is not what lacks, but for example a
+    // quota: then each pause is at least twice as long as the last.
     constexpr std::chrono::duration<double> shortest(0.1), longest(60);
     pause_ =
         std::clamp<std::chrono::duration<double>>(more ? 8 * run : std::max(8 * run, 2 * pause_), shortest, longest);
@@ -80,7 +81,7 @@ bool StoredJob::has_room() {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_check_) return false;
     next_check_ = now + apart;
-    // The file has a head and an end, too, and takes whole blocks of the disk.
+    // Besides the pairs, the file has a head and an end, and the disk stores whole blocks. So require one more block.
     constexpr std::uint64_t block = 4096;
     return parts_.folder.disk_space().free >= needed_bytes_ + block &&
            parts_.folder.disk().has(needed_bytes_, parts_.stored.owner);

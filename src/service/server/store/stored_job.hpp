@@ -47,7 +47,7 @@ public:
 
 private:
     Parts parts_;
-    // The job's result found no room: how much it needs at least, and when to look again.
+    // For a job whose result did not fit on the disk: bytes that the result needs at least, and time of the next check for room.
     std::uint64_t needed_bytes_ = 0;
     std::chrono::duration<double> pause_{0};
     std::chrono::steady_clock::time_point next_check_{};
