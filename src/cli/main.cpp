@@ -10,7 +10,7 @@ namespace octopair::cli {
 namespace {
 
 #ifndef OCTOPAIR_WITH_VIEWER
-/// Adds the subcommand of a build without the viewer, which says how to get it.
+/// Adds the subcommand `view` to a build without the viewer. It only fails with a message that says how to get the viewer.
 void add_missing_view(Command& program) {
     Command command = program.add_subcommand("view", "show a scene in a browser (not in this build)");
     command.ignore_other_arguments();

@@ -1,6 +1,7 @@
 // Commands of a program and their options.
 //
-// `Command` and `Option` are handles: copies name the same command or option of a `CommandLine`, which must outlive them.
+// `Command` and `Option` are handles into a `CommandLine`: copies of a handle refer to one command or option. Requires: the CommandLine
+// outlives its handles.
 // Only command.cpp includes CLI11, because its header takes 5 seconds to compile.
 #pragma once
 

@@ -2,7 +2,7 @@
 //
 // - The signals are blocked in all threads. One thread waits for them with sigwait().
 // - So no code runs in a signal handler, and no system call is interrupted.
-// - Requires: it is made before any other thread, because threads inherit the signal mask.
+// - Requires: the Interrupt is made before the program starts any thread, because new threads inherit the mask that blocks signals.
 #pragma once
 
 #include <csignal>

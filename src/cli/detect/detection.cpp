@@ -19,7 +19,7 @@ namespace octopair::cli {
 
 namespace {
 
-/// Returns a name for people: label and type, or else the name, or else the number.
+/// Returns a name of the object for messages: its label and type; without a label its name; without a name its number.
 [[maybe_unused]] std::string short_name(const io::LoadedScene& scene, std::uint32_t object) {
     const std::string_view label = scene.details.of(object, io::Detail::label);
     const std::string_view type = scene.details.of(object, io::Detail::type);

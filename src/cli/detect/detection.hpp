@@ -41,7 +41,7 @@ struct DetectRequest {
 
 /// Finds the pairs of a request, on the processes of a group, and writes them.
 /// Collective. Throws: Error, the same on all ranks.
-/// Returns the report of this rank: the numbers of all ranks, with the seconds of this one.
+/// Returns the report: counts summed over all ranks, and the seconds that this rank has measured.
 DetectReport detect(const DetectRequest& request, SearchGroup& searchers, const std::stop_token& stop);
 
 }  // namespace octopair::cli

@@ -1,4 +1,4 @@
-// Engine events: finds all pairs of each frame, and compares them with those of the frame before.
+// Engine events: finds all pairs of each frame with an engine, and compares them with the pairs of the frame before.
 #include <utility>
 #include <vector>
 

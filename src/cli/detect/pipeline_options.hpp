@@ -28,7 +28,7 @@ struct PipelineRequest {
     std::optional<double> tolerance, duplicate_tolerance, min_depth, weld;
     std::string baseline;  ///< path of an older result, or empty
     std::string report;    ///< path of the HTML report to write, or empty
-    io::SceneSpace space;  ///< axis up and unit for the report; unknown: those of the formats of the inputs
+    io::SceneSpace space;  ///< axis up and unit for the report; unknown: the report uses those of the input formats
 };
 
 /// Returns the stages of this build, by their names for --stage.
@@ -49,8 +49,8 @@ Stage stage_of(const DetectRequest& request);
 /// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request);
 
-/// Returns the tolerance of --tolerance. Without it: 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two
-/// to four steps of float32 there; 0 if none was.
+/// Returns the value of --tolerance. Without the option, returns 2^-22 of the largest coordinate that was rounded to float32
+/// (LoadedScene): two to four steps of float32 at this coordinate. Returns 0 if no coordinate was rounded.
 double tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns whether the request needs filters.

@@ -52,7 +52,7 @@ private:
     std::unique_ptr<FilterChain> filters_;
 };
 
-/// Results of one rank, for the sums over all ranks.
+/// Counts of one rank, which the ranks exchange to compute the sums over all ranks.
 struct RankResult {
     std::uint64_t collisions = 0;
     bool truncated = false;

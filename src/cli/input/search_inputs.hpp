@@ -23,7 +23,7 @@ struct SetSizes {
     std::uint64_t against = 0;
 };
 
-/// Paddings of the objects of the inputs, and after them those of the second set of a join.
+/// Paddings of --padding: first of the objects of the inputs, then of the objects of the second set of a join.
 class Paddings {
 public:
     /// Reads the file of --padding. Without --padding, there are no paddings.

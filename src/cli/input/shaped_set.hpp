@@ -11,7 +11,7 @@ namespace octopair::cli {
 
 struct HowToPrepare {
     unsigned threads = 0;
-    /// Largest gap of meshes that is closed (octopair::weld), as a length in the world; 0 leaves meshes as they are.
+    /// Maximum distance at which octopair::weld joins vertices of a mesh, as a length in the world; 0: meshes are not changed.
     double weld = 0;
 };
 
@@ -50,7 +50,7 @@ private:
 /// the set has only one.
 void make_shaped(InputSet& set, const HowToPrepare& how, const std::stop_token& stop);
 
-/// Does the same for both sets of a join. `second` may be empty. A plane gets a box that encloses the extent of the other set.
+/// Calls make_shaped() for both sets of a join. `second` may be empty. A plane gets a box that encloses the extent of the other set.
 /// Throws: what make_shaped() of one set throws.
 void make_shaped(InputSet& first, InputSet& second, const HowToPrepare& how, const std::stop_token& stop);
 

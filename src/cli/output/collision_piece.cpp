@@ -1,6 +1,6 @@
-// CollisionPiece: the collisions of one rank, stored until rank 0 writes those of all ranks.
+// CollisionPiece: keeps the collisions of one rank until rank 0 writes the collisions of all ranks.
 //
-// They are stored in blocks of trivially copyable values, so that ranks can send the arrays without conversion.
+// A piece has blocks of arrays of trivially copyable values, so that ranks can send the arrays without conversion.
 #include <algorithm>
 
 #include "cli/output/piece_output.hpp"

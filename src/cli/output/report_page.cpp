@@ -63,7 +63,7 @@ private:
 };
 
 constexpr std::size_t max_collisions = 200'000;
-constexpr std::uint64_t max_report_bytes = std::uint64_t(32) << 20;  ///< of the page, before it is compressed
+constexpr std::uint64_t max_report_bytes = std::uint64_t(32) << 20;  ///< maximum size of the uncompressed page
 
 /// FrameFinder that returns the collisions of the report, without a search.
 class KnownFrame final : public viewer::FrameFinder {
@@ -107,7 +107,7 @@ void append(viewer::SceneContents& contents, viewer::SceneContents&& other) {
     contents.objects = objects;
 }
 
-/// Returns the order of pairs by a, then b.
+/// Returns the indices of the pairs in ascending order of the pairs: by a, then by b.
 std::vector<std::size_t> ascending(const std::vector<Pair>& pairs) {
     std::vector<std::size_t> order(pairs.size());
     std::iota(order.begin(), order.end(), std::size_t(0));

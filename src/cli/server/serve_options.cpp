@@ -18,7 +18,7 @@ struct Described {
     const char* description;
 };
 
-/// `Number` is a number, or an optional one.
+/// Adds an option for a number. `Number` is an arithmetic type, or std::optional of it.
 template <typename Number>
 void add_number(Command& command, const Described& option, Number& value) {
     command
@@ -28,7 +28,7 @@ void add_number(Command& command, const Described& option, Number& value) {
         .type_name(option.type);
 }
 
-/// `Bytes` is a number, or an optional one.
+/// Adds an option for a number of bytes. `Bytes` is an integer type, or std::optional of it.
 template <typename Bytes>
 void add_bytes(Command& command, const Described& option, Bytes& value) {
     command

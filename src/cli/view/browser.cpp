@@ -203,7 +203,8 @@ void open_browser(const std::string& address) {
     if (!program) return;
     const pid_t child = ::fork();
     if (child == 0) {
-        // The system is the parent of this second child, so this program need not wait for it.
+        // Fork a second time and end the first child. The second child then belongs to the init process, and this program need not wait
+        // for the browser.
         sigset_t none;
         sigemptyset(&none);
         ::sigprocmask(SIG_SETMASK, &none, nullptr);

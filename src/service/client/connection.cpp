@@ -57,7 +57,7 @@ uid_t user_of(const std::string& name) {
     uid_t number = 0;
     const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
     if (error == std::errc() && end == name.data() + name.size()) return number;
-    const passwd* const known = ::getpwnam(name.c_str());  // only one thread makes connections of a program's options
+    const passwd* const known = ::getpwnam(name.c_str());  // not thread-safe; a program calls it on one thread only
     if (known == nullptr) throw Error(ErrorCode::usage, "no user has the name '" + name + "'");
     return known->pw_uid;
 }

@@ -12,7 +12,7 @@ Boxes part_of(const Boxes& boxes, std::size_t begin, std::size_t count) {
     return std::visit([&](auto span) -> Boxes { return span.subspan(begin, count); }, boxes);
 }
 
-/// Returns the part of an array that has one element for each object, one for all objects, or none.
+/// Returns the elements for the objects from `begin` on. `all` has one element for each object, a single element for all, or none.
 template <typename T>
 std::span<const T> part_of(std::span<const T> all, std::size_t begin, std::size_t count) {
     return all.size() > 1 ? all.subspan(begin, count) : all;
@@ -26,7 +26,7 @@ void by_parts(std::size_t count, std::size_t most, Body&& body) {
 
 }  // namespace
 
-/// Encodes a call as one or more records. On an exception, none of them is kept.
+/// Encodes a call as one or more records. On an exception, keeps no record of the call.
 template <typename Encode>
 void PendingCalls::encode(std::size_t objects, Encode&& encode_part) {
     const std::size_t before = bytes_.size();

@@ -53,7 +53,7 @@ void configure(grpc::ServerBuilder& builder, const ServerOptions& options) {
     // Answering a flood of pings costs less than refusing it: gRPC collects an error for each ping beyond the limit.
     builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 0);
     builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, 16 << 10);
-    // Calls of one read are handled after all of it: a read of 4 MiB, the default, may begin 15,000 calls.
+    // gRPC handles the calls of a read only after the whole read. A read of 4 MiB, the default size, may begin 15,000 calls.
     builder.AddChannelArgument(GRPC_ARG_TCP_MAX_READ_CHUNK_SIZE, 64 << 10);
 }
 
@@ -114,7 +114,7 @@ public:
     void reload() {
         auto files = context_.access.read();
         credentials_.reload();
-        context_.access.use(std::move(files));  // last, so that a failure before has changed nothing
+        context_.access.use(std::move(files));  // last: if reload() above throws, tokens and roles are unchanged
         warn_of_clients_without_token();
     }
 
@@ -157,7 +157,7 @@ private:
             }
             listener_.start(std::move(listening));
         } catch (...) {
-            new_connections_.close();  // the threads end; otherwise their destructors would wait for them without end
+            new_connections_.close();  // ends the threads, which the destructor joins
             throw;
         }
     }

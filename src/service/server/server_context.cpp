@@ -34,7 +34,7 @@ void check_limit(const char* name, std::uint64_t asked, std::uint64_t allowed) {
                      "a job of " + std::to_string(asked) + " " + name + "; at most " + std::to_string(allowed));
 }
 
-/// Returns memory that is free to the system. glibc keeps up to 64 MiB of it for each of several heaps.
+/// Returns freed memory to the system. glibc would keep up to 64 MiB of freed memory in each of several heaps.
 void give_back_free_memory() {
 #ifdef __GLIBC__
     ::malloc_trim(0);

@@ -49,7 +49,7 @@ private:
     std::list<Running> running_;
 };
 
-/// A caller whose call was admitted. It counts as a call of the client while it exists.
+/// An admitted call: its caller, and a reservation of one call of the client, which the destructor gives back.
 struct Admission {
     Caller caller;
     Budget::Reservation call;
@@ -70,8 +70,8 @@ public:
     ServerLog server_log;
     Budget memory;
     ArrayPool array_pool;
-    Budget job_slots;                            // of unfinished jobs, and of scenes
-    Budget calls;                                // at a time
+    Budget job_slots;                            // one slot for each unfinished job and each scene
+    Budget calls;                                // number of calls at a time
     const std::uint64_t connections_per_client;  // over TCP; 0: no limit
     const std::unique_ptr<StateFolder> state;    // null: the server takes no detached jobs
     JobTable jobs;

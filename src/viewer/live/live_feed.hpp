@@ -4,7 +4,7 @@
 // Invariants
 //   Rows are the first `most_shown` indices of the scene, in order.
 //   changed_[row] is the last frame in which the row's box differed from the frame before.
-//   The pairs are those of the latest frame, if a frame has brought all pairs; then each frame changes them by its events.
+//   pairs_ has the pairs of the latest frame: a state with all pairs replaces pairs_, and a state with events changes pairs_.
 //
 // Thread safety: all functions may be called by any thread.
 #pragma once

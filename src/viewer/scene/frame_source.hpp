@@ -1,6 +1,6 @@
 // FrameSource: offers a scene of files, frame by frame (kind "scene" of viewer/protocol.md).
 //
-// - Frames are found when the page requests them. The last few are kept.
+// - The finder searches a frame when the page requests the frame. The source keeps the last few frames.
 // - The first find() comes from load(). Until it ends, the source is loading.
 // - count_frames() counts the pairs of all frames in order, on a thread of the caller.
 #pragma once

@@ -20,7 +20,7 @@ namespace octopair::viewer {
 /// A shape as triangles, in its own coordinates, relative to `centre`.
 struct ShownShape {
     std::string kind;     ///< for example "mesh"
-    Point3d centre = {};  ///< so that float32 suffices for a shape far from its origin
+    Point3d centre = {};  ///< vertices are relative to `centre`, so that float32 is precise enough
     std::vector<std::array<float, 3>> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
 };
@@ -36,7 +36,7 @@ struct Fact {
     std::string text = {};  ///< if not empty, in place of the number
 };
 
-/// All that does not depend on the frame. Arrays have one element per object, or are empty.
+/// The properties of a scene that are equal in all frames. Arrays have one element per object, or are empty.
 struct SceneContents {
     std::string title;
     std::uint64_t objects = 0;

@@ -2,7 +2,7 @@
 //
 // Invariants
 //   Rows are in octal order of the boxes' centres, so a block of adjacent rows is near together in space.
-//   The overview of a large scene has the largest objects, and every n-th of the others in octal order.
+//   The overview of a large scene has the largest objects, and every n-th of the smaller objects in octal order.
 //   The choice depends on the boxes alone.
 #pragma once
 

@@ -172,7 +172,7 @@ private:
         return true;
     }
 
-    /// Replaces the faces that see a point by faces that join the border of these faces to the point.
+    /// Adds a point outside the hull: removes the faces that are visible from the point, and joins the border of the hole to the point.
     void add(std::uint32_t point) {
         std::map<std::pair<std::uint32_t, std::uint32_t>, int> border;
         std::vector<Triangle> kept;

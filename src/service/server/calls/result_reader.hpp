@@ -1,7 +1,7 @@
 // ResultReader: a thread that reads pieces of results for the calls that send them. Clients take turns (fair_order.hpp).
 //
-// Reading and checking a piece of 1 MiB takes some tenths of a millisecond. gRPC has few threads, so many results of one client would
-// delay the calls of all others if they were read on these threads.
+// Reading and checking a piece of 1 MiB takes some tenths of a millisecond. gRPC has few threads. If gRPC's threads read results, a client
+// with many results would delay the calls of all other clients.
 #pragma once
 
 #include <chrono>

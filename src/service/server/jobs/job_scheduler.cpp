@@ -91,8 +91,8 @@ void JobScheduler::renew_idle(Lane& lane, KeptEngine& engine) {
     if (is_large && on_idle_ && std::exchange(cleaned_after_, ended) != ended) on_idle_();
 }
 
-/// Returns the job whose turn it is among those that can run, or jobs.end(). Candidates are the first attached and the first detached
-/// job of each client. Jobs that wait for room for their results let all others pass.
+/// Returns the next job to run, or jobs.end() if no job can run. Candidates are the first attached and the first detached job of each
+/// client. Jobs that wait for room for their results are skipped.
 JobScheduler::Queue::Items::iterator JobScheduler::next_ready(Queue::Items& jobs, Lane& lane) const {
     struct Candidate {
         double start;

@@ -3,11 +3,11 @@
 // Invariants
 //   Jobs of at most `max_small_objects` objects have engines of one thread each, so they never wait for large jobs. Large
 //   jobs share one engine with all threads.
-//   In each of the two queues, clients take turns (fair_order.hpp). The jobs of one client run in the order in which they were added. A
-//   detached job that waits for memory lets attached jobs pass, but no detached one whose turn is later.
+//   In each of the two queues (small and large jobs), clients take turns (fair_order.hpp). The jobs of one client run in the order of
+//   add(). While a detached job waits for memory, attached jobs may run before this job, but later detached jobs may not.
 //   If the server distinguishes clients, and has several engines of small jobs, one client uses at most all but one of them: a job with a
 //   small number of objects can have so many pairs that it takes long.
-//   An engine that was idle for `idle_before_renewal` is made anew, if renewable: it keeps the memory of its largest job otherwise.
+//   An engine keeps the memory of its largest job. So a renewable engine that was idle for `idle_before_renewal` is made anew.
 //   An attached job of at most `max_instant_objects` objects runs on the calling thread if an instant engine is free.
 //   Waking a thread would take as long as the job.
 #pragma once
@@ -109,7 +109,7 @@ public:
 
 private:
     using Queue = WorkQueue<std::shared_ptr<ServerJob>>;
-    /// A queue of jobs, and whose turn it is.
+    /// A queue of jobs, and the order in which clients take turns.
     struct Lane {
         Queue queue;
         unsigned engines = 0;

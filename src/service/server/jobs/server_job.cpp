@@ -107,8 +107,8 @@ ServerJob::Ran ServerJob::run(const std::shared_ptr<Engine>& engine) noexcept {
     return Ran::ended;
 }
 
-/// Puts the running job back into the state queued. Returns false if it has ended instead: there can never be room for its result, or it
-/// was ended early.
+/// Puts the running job back into the state queued. Returns false if the job has ended instead, because its result can never fit, or
+/// because of end_early().
 bool ServerJob::queue_again(const NoRoomError& why) noexcept {
     try {
         Clock::time_point began;

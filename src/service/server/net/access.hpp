@@ -5,7 +5,7 @@
 //   with client certificates   the first subject alternative name of its certificate, a URI, e-mail address or DNS name in this
 //                              order of preference: "certificate-uri:", "certificate-email:" or "certificate-dns:" and the name;
 //                              without one, "certificate:" and the common name. A certificate without a name is refused.
-//   else                       "local" for all callers; the address limits them (private Unix socket, or loopback)
+//   else                       "local" for all callers; only local users can reach the address (private Unix socket, or loopback)
 #pragma once
 
 #include <memory>

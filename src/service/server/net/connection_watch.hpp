@@ -6,18 +6,19 @@
 //   - in bytes received: at most `max_bytes`. An endless header, for example, would cost the server much time (CVE-2023-33953). So the
 //     first call of a connection must be small; Describe is;
 //   - in refused calls: at most `max_refused_calls`. Calls that are reset at once, for example, would cost much (CVE-2023-44487);
-//   - in number: all unknown connections together may take half of the slots, those of one address an eighth. Beyond that, the
-//     oldest unknown connection of the address that has most of them is cut. So known clients always find slots.
-// A known connection counts for the client of its first call, until it is closed. It is bounded in calls that it resets (CVE-2023-44487):
+//   - in number: all unknown connections together may take half of the slots, and the unknown connections of one address an eighth.
+//     Beyond these limits, the watch cuts the oldest unknown connection of the address with the most unknown connections. So known
+//     clients always find slots.
+// A known connection counts for the client of its first call, until it is closed. Its calls are limited (CVE-2023-44487):
 //   - `max_open_calls`: calls that have begun and not ended. HTTP/2 permits fewer streams; the others were reset, and the server has not
 //     dealt with that yet;
 //   - `max_resets`: calls of a client that recently ended by a reset, on all its connections together. A connection with at most
 //     `tolerated_resets` resets is not cut for the resets of other connections.
 // After such a cut, the server cuts new connections of this client at their first call, for the time `pause`.
 //
-// After a connection was cut for its bytes or calls, new connections of its address wait. They are handed on one by one, with an
-// interval between them. Otherwise a stranger could connect again at once and cost as much time again. No address is refused, because
-// clients may share it.
+// After a connection was cut for its bytes or calls, new connections of its address wait, and gRPC gets only one per `interval`.
+// Otherwise an attacker could connect again at once and cost the same time again. No address is refused, because honest clients may
+// share the address with the attacker.
 #pragma once
 
 #include <sys/types.h>

@@ -1,7 +1,7 @@
 // InsecureCredentials: credentials of a server without TLS that pass the begin of each call to a processor.
 //
-// gRPC's C++ interface has processors for secure credentials alone, so these credentials are made in C. They derive from a class of gRPC
-// that has two forms:
+// gRPC's C++ interface has processors only for secure credentials, so this file uses gRPC's C interface. InsecureCredentials derives from
+// grpc::ServerCredentials, which has two forms:
 // - In gRPC 1.51 ServerCredentials has no members, and a derived class binds the ports.
 // - In later versions ServerCredentials owns credentials in C, which its constructor takes, and binds the ports with them.
 #pragma once

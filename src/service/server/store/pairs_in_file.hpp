@@ -46,7 +46,7 @@ public:
     std::optional<grpc::Slice> piece(std::uint64_t offset) const override;
     std::uint64_t ready() const override;
 
-    /// Returns the bytes of disk space that the pairs take, with those for which there was no room.
+    /// Returns the bytes of disk space that all appended pairs need, with the pairs that did not fit on the disk.
     std::uint64_t needed_bytes() const;
     /// Deletes all pairs. Does nothing after seal().
     void discard() noexcept;

@@ -61,7 +61,7 @@ public:
 
     /// Bytes of disk space. 0: no limit.
     struct Room {
-        std::uint64_t total = 0, per_client = 0;  ///< for all jobs, and for those of one client
+        std::uint64_t total = 0, per_client = 0;  ///< limit for all jobs together, and for the jobs of one client
     };
 
     /// Creates the folder, private to its owner, if it does not exist, and locks it. Throws: Error{usage} if other users may
@@ -83,7 +83,7 @@ public:
     std::string new_base();
     Budget& disk() { return disk_; }
     struct DiskSpace {
-        std::uint64_t total, free;  ///< bytes of the folder's disk, and those that this program may still use
+        std::uint64_t total, free;  ///< size of the folder's disk, and free space that this program may use, in bytes
     };
     /// Returns the space on the folder's disk. If the system does not report the space, both numbers are the greatest 64-bit number.
     DiskSpace disk_space() const;
