@@ -1,6 +1,7 @@
 // SearchGroup: the processes that search together, and FrameSearch: how they find and write the pairs of one frame after another.
-// Each has two implementations: one process with any engine, which streams its pairs (stream_search.cpp), and ranks of MPI, which read
-// slices of the inputs and join their pieces of the result (rank_group.hpp, rank_search.cpp).
+// Each has two implementations:
+// - stream_search.cpp: one process with any engine streams its pairs.
+// - rank_group.hpp, rank_search.cpp: ranks of MPI read slices of the inputs, and join their pieces of the result.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // The remote engine: runs every call as a job on the server.
 //
 // A job with small input and result uses one message each way. Other jobs use a stream. If the stream breaks, the client sends
-// the whole job again with the same id, and the server omits the pairs that the client has received already.
+// the whole job again with the same id. The server then omits the pairs that the client has received.
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 #include <grpcpp/completion_queue.h>

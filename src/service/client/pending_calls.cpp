@@ -85,8 +85,8 @@ void PendingCalls::send(const Send& send) {
 }
 
 /// The server's scene must assign the same indices as the client's scene. A new scene assigns ascending indices, and after its first
-/// step frees the indices of removed objects in the order of removal. So the calls add an object for each index of the client's scene,
-/// then remove the objects at indices that the client's scene does not use.
+/// step frees the indices of removed objects in the order of removal. So the calls first add an object for each index of the client's
+/// scene. Then they remove the objects at unused indices.
 void PendingCalls::send_whole(const SceneOptions& options, const SceneObjects& objects, const Send& send) {
     clear();
     generation_offsets_.clear();

@@ -171,7 +171,7 @@ std::string LiveFeed::difference_since(std::uint32_t last) const {
         for (const Pair pair : difference.ended) events.push_back({pair, false});
         for (const Pair pair : difference.began) events.push_back({pair, true});
     }
-    // If the first and the last event of a pair differ (it began and ended, or ended and began), the pair has not changed since `last`.
+    // A pair whose first event is a begin and whose last event is an end, or the reverse, has not changed since `last`.
     std::map<Pair, bool> first;
     for (const auto& [pair, began] : events) first.emplace(pair, began);
     sort_events(events);

@@ -77,7 +77,7 @@ public:
     /// Returns whether the job is queued and there is no room for its result.
     bool waits_for_room();
     enum class Ran : std::uint8_t { ended, queued_again };
-    /// Runs the job on the calling thread and ends it, or puts it back into the state queued if there is no room for its result.
+    /// Runs the job on the calling thread. The job then has ended, or is queued again if its result did not fit on the disk.
     Ran run(const std::shared_ptr<Engine>& engine) noexcept;
     /// Stops the job without storing an ending, so that the next server runs the job again. Has no effect on a job that has ended, or that
     /// cancel() or fail() is ending.

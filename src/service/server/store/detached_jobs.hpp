@@ -28,7 +28,7 @@ public:
     /// Error{io_failed}.
     Submission begin(const std::string& owner, v1::JobSpec spec);
     /// Writes the job to the disk, queues the job and returns it. If the owner already has a job with this id and hash, returns the older
-    /// job, or null if the older job was released during the upload. Requires: the input is complete; called on the disk queue.
+    /// job. Returns null if the older job was released during the upload. Requires: the input is complete; called on the disk queue.
     /// Throws: Error{bad_input} if the existing job has another hash; Error{io_failed}.
     std::shared_ptr<ServerJob> commit(Submission& submission);
     /// Removes a job and its files. Requires: the job has ended; runs on the disk queue.
