@@ -23,7 +23,7 @@ public:
     ShapedSet(const ShapedSet&) = delete;
     ShapedSet& operator=(const ShapedSet&) = delete;
 
-    // The returned spans and references point into this object.
+    // All returned spans, also those in ShapedObjects and GroupMasks, borrow from this ShapedSet.
 
     ShapedObjects objects(std::span<const double> padding = {}) const;
     /// Returns the paddings that the files give; empty if they give none.
