@@ -61,8 +61,8 @@ unsigned Engine::verification_threads() const { return 0; }
 namespace {
 
 /// A call with Options::verify. Checks the engine's result before the caller receives it, in the caller's process, with every engine.
-/// A list is checked when it is complete. Of a stream, each batch is checked before the caller's sink receives it, and the whole
-/// stream at its end.
+/// A list is checked when it is complete. A stream is checked batch by batch, before the caller's sink receives the batch. When the
+/// stream has ended, the verifier also checks that no pair is missing.
 class VerifiedCall {
 public:
     using Run = std::function<Summary(const detail::Request&, const detail::Output&, const detail::Control&)>;
@@ -99,9 +99,9 @@ public:
     }
 
 private:
-    /// Fraction of the progress for the engine's search. The check takes longer, and reports its own progress better.
+    /// Progress of the call when the engine's search ends, as a fraction. The rest is for the check, which takes longer than the search.
     static constexpr double search_progress = 0.3;
-    /// Fraction for the search of an ascending stream: most of the stream is checked before its last pair is found.
+    /// The same fraction for an ascending stream: most of its pairs are checked during the search, before the last pair is found.
     static constexpr double stream_progress = 0.9;
 
     bool is_stream() const { return output_.sink != nullptr; }
@@ -130,9 +130,9 @@ private:
 
 }  // namespace
 
-/// Runs one public call. Refuses calls from callbacks of this engine, whose turn would never come. Checks the request first, and turns
-/// std::bad_alloc into Error{resource_limit}. Leaves the list empty on failure. Sinks and progress callbacks also run in the default
-/// floating-point state.
+/// Runs one public call. Throws if a callback of this engine makes the call: the new call would wait for the running call, which waits for
+/// the callback. Checks the request, and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty on failure. The engine, the
+/// sinks and the progress callbacks run in the default floating-point state.
 Summary Engine::call(const detail::Request& request, const detail::Output& output, std::stop_token stop) {
     refuse_inside_call_of(this);
     const FloatingPointScope scope;

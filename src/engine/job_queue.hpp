@@ -3,8 +3,8 @@
 // Invariants
 //   The first job starts the thread. The engine owns its queue as its last member, so the queue ends first: it cancels all
 //   jobs and joins the thread while all that a job uses still exists.
-//   A job that is cancelled while it waits ends at once. Only its empty JobTask stays in the queue, until its turn or until
-//   the queue has doubled. With `skipped` it stays until its turn, and `skipped` is called then.
+//   A job that is cancelled while it waits ends at once. Its empty JobTask stays in the queue until its turn. Without `skipped`, empty
+//   tasks are also removed each time the length of the queue has doubled. With `skipped`, `skipped` is called at the task's turn.
 #pragma once
 
 #include <functional>

@@ -58,8 +58,8 @@ private:
     struct Ending {
         JobState state;
         Summary summary = {};
-        std::optional<Error> error = {};       // absent if the job did not fail, or was out of memory
-        std::optional<ErrorPlace> place = {};  // of the error
+        std::optional<Error> error = {};       // absent if the job did not fail, or if it failed because memory ran out
+        std::optional<ErrorPlace> place = {};  // place of the error in the input
     };
 
     bool hold(JobState state);
@@ -81,7 +81,7 @@ private:
     mutable std::condition_variable ended_;
     JobState state_ = JobState::queued;
     Ending ending_{};
-    const Engine* engine_ = nullptr;  // whose queue has the task; never accessed through this pointer
+    const Engine* engine_ = nullptr;  // engine whose queue has the task; compared only, never dereferenced
     std::thread::id queue_thread_;
     std::thread::id holder_;
 };

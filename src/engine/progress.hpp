@@ -10,7 +10,7 @@
 
 namespace octopair {
 
-/// Part of a pass in ascending order that its scan takes where objects have many pairs; the rest sorts pairs.
+/// Fraction of the time of a pass in ascending order that its scan takes, if objects have many pairs. Sorting takes the rest.
 inline constexpr double ascending_scan_part = 0.6;
 
 class OCTOPAIR_PRIVATE_EXPORT Progress {

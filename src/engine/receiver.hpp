@@ -17,7 +17,8 @@ public:
 
     struct LimitReached {};
 
-    /// Throws: LimitReached after the pairs up to the limit, if `pairs` exceeds it; what the sink throws.
+    /// Passes on the pairs that are within the limit.
+    /// Throws: LimitReached if some of `pairs` are beyond the limit, after it has passed on the others; what the sink throws.
     void take(std::span<const Pair> pairs);
     /// Passes the batched pairs to the sink.
     void flush();

@@ -34,7 +34,8 @@ inline Request request_of(const Input& input, const Options& options) {
 /// Throws: Error{bad_input}, or Error{resource_limit} for too many objects.
 OCTOPAIR_PRIVATE_EXPORT void check_request(const Request& request);
 
-/// Returns a function that calls `progress`, on any thread, as a callback of `call`; empty if `progress` is empty. Borrows both.
+/// Returns a function that calls `progress` inside a CallbackScope of `call`. Any thread may call this function. Returns an empty function
+/// if `progress` is empty. Borrows both arguments.
 OCTOPAIR_PRIVATE_EXPORT ProgressSink callback_of(const CallScope& call, const ProgressSink& progress);
 
 struct Control {

@@ -96,7 +96,7 @@ void Search::find_ascending(Call& call) {
     hand_out_held(call, receiver, 1);
 }
 
-/// Collects the pairs of a window in `held_`. `bounds` has room for the number of pairs that was counted before.
+/// Collects the pairs of a window in `held_`. The limit of `bounds` is large enough, because the pairs were counted before.
 void Search::collect_counted(Call& call, const AscendingBounds& bounds, double progress) {
     detail::storage_of(held_).reset();
     try {

@@ -83,7 +83,7 @@ void Directory::make_table(const Space& space) {
     fill_table(0, {{}, table_size_, level, 0});
 }
 
-/// Fills in the elements of `table` that lie in octant `index`. Elements beyond the table's sizes are left out.
+/// Sets the elements of `table` whose cells lie in octant `index`. Ignores the part of the octant outside the table.
 void Directory::fill_table(OctantIndex index, const Table& table) {
     const Octant octant = octants_[index];
     if (!octant.leaf() && octant.level < table.level) {

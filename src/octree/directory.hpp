@@ -70,7 +70,7 @@ public:
     private:
         std::uint32_t element_;
     };
-    /// The tables of leaf(), for SIMD versions. See the comment at the tables below.
+    /// The tables in which leaf() looks up cells, for SIMD versions of leaf(). The comment at first_element() explains the tables.
     struct LeafTable {
         const std::uint32_t* elements;
         std::size_t size;
@@ -78,7 +78,7 @@ public:
         unsigned shift;       ///< an octant of the first table has 2^shift cells on each axis
         unsigned last_shift;  ///< the finest leaf has 2^last_shift cells on each axis
 
-        /// Returns the number of levels of a table below an octant of 2^`of` cells on each axis.
+        /// Returns the number of octree levels that a table covers if its octant has 2^`of` cells on each axis.
         unsigned levels_below(unsigned of) const { return std::min(of - last_shift, max_levels); }
         static constexpr unsigned max_levels = 3;
     };
@@ -93,7 +93,7 @@ public:
         while (found >= further) found = further_element(found, cell, shift);
         return Leaf(found);
     }
-    /// Finds the leaf that each box begins in, for many boxes at once.
+    /// Sets leaves[i] to the leaf that boxes[i] begins in.
     void leaves(std::span<const CellBox> boxes, std::span<Leaf> leaves) const;
     /// Returns the octant of `level` that holds the leaf, or the leaf itself if its level is not deeper.
     OctantIndex at_most(const Leaf& leaf, unsigned level) const {

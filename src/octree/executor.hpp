@@ -28,7 +28,8 @@ public:
     virtual ~ShareWriter() = default;
     /// True if pairs are counted only: the share then calls write_count in place of write.
     virtual bool counting() const = 0;
-    /// Returns memory for `pairs` pairs, or no memory. Pairs that are written from its begin need not be copied.
+    /// Returns memory for `pairs` pairs, or an empty span. If the caller stores pairs from the begin of this memory on, and passes them to
+    /// write(), write() need not copy them.
     virtual std::span<Pair> room([[maybe_unused]] std::size_t pairs) { return {}; }
     virtual void write(std::span<const Pair> pairs) = 0;
     virtual void write_count(std::uint64_t pairs) = 0;
@@ -63,7 +64,7 @@ public:
     void write_count(std::uint64_t) override {}
 };
 
-/// Runs all shares on the calling thread and gives their pairs to one writer. A share that has steps of its own runs them in this way.
+/// Runs all shares on the calling thread and gives their pairs to one writer. A share that itself runs a divided step uses this executor.
 class SerialExecutor final : public Executor {
 public:
     explicit SerialExecutor(ShareWriter& writer) : writer_(writer) {}

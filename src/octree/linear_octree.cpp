@@ -44,7 +44,7 @@ std::vector<Entry> sample_of(const EntrySource& source) {
     std::vector<std::size_t> positions(sample.size());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
     std::vector<Entry> sampled(sample.size());
-    source.pick(positions, sampled);  // scatter finds invalid objects, with their positions
+    source.pick(positions, sampled);  // invalid objects are ignored here: scatter finds them, with their positions
     return sampled;
 }
 
@@ -72,7 +72,7 @@ OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects, co
 }
 
 OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop) {
-    // The sample is freed before the entries need the memory.
+    // The sample is freed when this function returns, before the entries need the memory.
     const std::vector<Entry> sampled = sample_of(source);
     return plan_octree(sampled, source.size(), stop);
 }

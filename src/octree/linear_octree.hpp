@@ -30,7 +30,7 @@
 
 namespace octopair {
 
-/// Seconds of the steps. Encode and scatter run together; their time is divided by a sample of the batches.
+/// Seconds of the steps. Encode and scatter alternate, so only a sample of the batches is timed. This sample gives the parts of both.
 struct BuildSeconds {
     double encode = 0, scatter = 0, count = 0;
 };
@@ -41,9 +41,9 @@ struct OctreeLayout {
     Directory directory;
 };
 
-/// Returns the positions of the objects that an octree of `objects` objects is planned from.
+/// Returns the positions of the sampled objects, from which the octants of an octree of `objects` objects are chosen.
 OCTOPAIR_PRIVATE_EXPORT Sample octant_sample(std::uint64_t objects);
-/// Returns the rule that divides octants by such a sample.
+/// Returns the rule that decides, from the objects of octant_sample(), which octants are divided.
 OCTOPAIR_PRIVATE_EXPORT SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop);
 /// Space and shape of an octree, small enough to be sent to other processes.
 struct OctreePlan {
@@ -57,7 +57,7 @@ struct OctreePlan {
 OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects,
                                                const std::stop_token& stop);
 OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop);
-/// Returns the layout of plan_octree().
+/// Samples `source`, calls plan_octree(), and returns the layout of this plan.
 OCTOPAIR_PRIVATE_EXPORT OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop);
 
 class OCTOPAIR_PRIVATE_EXPORT LinearOctree {
@@ -71,15 +71,16 @@ public:
     /// Throws: Error{cancelled}; Invalid if an object is not a valid box.
     void build(const EntrySource& source, Executor& executor, std::stop_token stop);
 
-    /// Position from which to search for the first invalid object.
+    /// Exception for an invalid object. No object before the position in it is invalid.
     struct Invalid {
         std::size_t begin;
     };
 
-    /// Builds in the given octants. Throws as build() above does.
+    /// Builds with the octants of `layout`, without a sample. Throws as build() above does.
     void build(OctreeLayout layout, const EntrySource& source, Executor& executor, std::stop_token stop);
 
-    /// Builds in the existing octants: faster than build(), and as good while boxes have moved little. Throws as build() does.
+    /// Builds with the octants of the last build. Takes less time than build(). Scans stay as fast as long as boxes have moved little.
+    /// Throws as build() does.
     void refill(const EntrySource& source, Executor& executor, std::stop_token stop);
 
     const Space& space() const { return layout_.space; }

@@ -31,8 +31,8 @@ inline std::uint32_t class_bits(const CellBox& box, const Octant& octant) {
     return axes;
 }
 
-/// An octant of the outermost octree. With test hooks, each pair reported within the octant is checked: the octant must hold
-/// the low corner of the intersection.
+/// An octant of the outermost octree. With test hooks, a scan checks each pair that it reports in the octant: the octant must hold the
+/// low corner of the pair's intersection.
 struct OutermostOctant {
     Space space;
     Octant octant;

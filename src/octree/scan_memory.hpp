@@ -1,4 +1,4 @@
-// ScanMemory: the arrays in which octants are scanned. ScanMemoryPool keeps them, so that the next scan finds them allocated.
+// ScanMemory: the arrays that a scan of octants fills. ScanMemoryPool keeps these arrays allocated between scans.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace octopair {
 
-/// Memory that one share at a time uses to sweep octants. Crowds have memory of their own. The contents are undefined when it is lent.
+/// Memory that one share at a time uses to sweep octants. Octants that are too large for one sweep use other memory. The contents are
+/// undefined when the pool lends the memory.
 struct ScanMemory {
     using Runs = std::vector<std::span<const CellEntry>>;
     Runs runs, next_runs;                                 // entries of the scanned octant, and of the next octant
@@ -31,10 +32,10 @@ class ScanMemoryPool {
     };
 
 public:
-    /// Gives the memory back when it is destroyed. Requires: the pool still exists then.
+    /// Memory that the pool lends. Its destructor gives the memory back to the pool. Requires: the pool still exists then.
     using Lent = std::unique_ptr<ScanMemory, GiveBack>;
 
-    /// Throws: std::bad_alloc.
+    /// Returns free memory, or allocates memory if none is free. Throws: std::bad_alloc.
     Lent lend() {
         const std::lock_guard lock(mutex_);
         if (free_.empty()) {
@@ -55,7 +56,7 @@ private:
 
     std::mutex mutex_;
     std::vector<std::unique_ptr<ScanMemory>> free_;
-    std::size_t allocated_ = 0;  // free ones and lent ones
+    std::size_t allocated_ = 0;  // number of all ScanMemory objects, free and lent
 };
 
 }  // namespace octopair

@@ -68,8 +68,8 @@ HWY_INLINE Lanes lane_numbers(const std::array<std::uint8_t, LaneTable::lanes>& 
 /// Returns the index with which TableLookupLanes moves the lanes of a set to the front.
 HWY_INLINE auto to_front(std::uint32_t set) { return hn::IndicesFromVec(Words(), lane_numbers(lanes_in.of[set])); }
 
-/// Transposes blocks of four numbers. Before: block k of register i has the numbers of item 4 k + i. After: register i has
-/// number i of all items. Or back.
+/// Transposes blocks of four numbers. Before: block k of register i has the numbers of item 4 k + i. After: register i has number i of
+/// all items. A second call restores the first form.
 HWY_INLINE void transpose(Lanes (&registers)[4]) {
     const Words d;
     const auto lower02 = hn::InterleaveLower(d, registers[0], registers[2]);
@@ -82,7 +82,7 @@ HWY_INLINE void transpose(Lanes (&registers)[4]) {
     registers[3] = hn::InterleaveUpper(d, upper02, upper13);
 }
 
-/// Loads the four numbers of item i, and those of item i + 4 if a register has eight lanes. at(i): address of item i.
+/// Loads the four numbers of item i. If a register has eight lanes, also loads the four numbers of item i + 4. at(i): address of item i.
 template <typename D, typename At>
 HWY_INLINE hn::Vec<D> load_blocks(D d, std::size_t i, const At& at) {
     const hn::FixedTag<std::uint32_t, 4> block;

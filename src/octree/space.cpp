@@ -48,7 +48,7 @@ SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, 
         std::nth_element(values.begin(), median, values.end());
         return {*median, *std::max_element(median, values.end())};
     }
-    // Few values are as far out as the quantile: it takes less time to sort these than to part all values.
+    // Only 1/64 of the values is beyond the quantile. Sorting these values alone takes less time than partitioning all values.
     const auto quantile = values.begin() + std::ptrdiff_t(values.size() / 64);
     if (what == Measure::low) {
         std::partial_sort(values.begin(), quantile + 1, values.end());
@@ -60,8 +60,8 @@ SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, 
 
 namespace {
 
-/// Returns about the distance between neighbours: a power of two near the cube root of volume / objects. Axes without extent
-/// are left out.
+/// Returns an estimate of the distance between neighbouring objects: a power of two near the cube root of volume / objects. Ignores axes
+/// without extent: with two axes, it is the square root of area / objects.
 double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
     int exponent = -int(std::bit_width(objects));
     int dimensions = 0;
@@ -131,7 +131,7 @@ Box3d Space::bounds(const CellBox& cells) const {
     Box3d bounds;
     for (unsigned axis = 0; axis < 3; ++axis) {
         const double origin = double(map_.origin[axis]), cell = (1u << SpaceMap::fine_bits) / double(map_.scale[axis]);
-        // In the map, a difference above FLT_MAX overflows and gets the last cell. So no cell begins farther away.
+        // Limits the offset to FLT_MAX: in the map, a greater difference overflows and gets the last cell, so no cell begins there.
         const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
         const double hi = origin + (double(cells.hi[axis]) + 1) * cell;
         bounds.min[axis] = cells.lo[axis] == 0 ? -infinity : lo - roundings * (std::abs(origin) + std::abs(lo));

@@ -37,7 +37,8 @@ struct alignas(16) CellBox {
     Cell lo = {}, hi = {};
 };
 
-/// The deepest level at which the box touches at most two octants on each axis, so at most eight.
+/// Returns a level at which the box touches at most two octants on each axis, so at most eight. It is the deepest such level, or the
+/// level above the deepest.
 inline unsigned natural_level(const CellBox& box) {
     const std::uint32_t extent = (box.hi[0] - box.lo[0]) | (box.hi[1] - box.lo[1]) | (box.hi[2] - box.lo[2]);
     return deepest - unsigned(std::bit_width(extent));
@@ -48,7 +49,7 @@ struct SpaceMap {
     static constexpr unsigned fine_bits = 2;  ///< a cell has 2^fine_bits fine cells on each axis
     static constexpr unsigned bits = deepest + fine_bits;
     static constexpr std::uint32_t last_fine_cell = (std::uint32_t(1) << bits) - 1;
-    static constexpr float whole = 0x1p23f;  // adding it rounds to an integer, which is then in the low bits
+    static constexpr float whole = 0x1p23f;  // adding 2^23 rounds a number to an integer, which the low bits then hold
     std::array<float, 4> origin = {0, 0, 0, 0};
     std::array<float, 4> scale = {1, 1, 1, 0};  ///< fine cells for each unit of length
     std::array<float, 4> last = {float(last_fine_cell), float(last_fine_cell), float(last_fine_cell), 0};
@@ -63,8 +64,8 @@ struct SpaceMap {
     std::uint32_t cell(float coordinate, unsigned axis) const { return fine_cell(coordinate, axis) >> fine_bits; }
 };
 
-/// The subset of the sampled boxes that a space is fitted to, and the three measures taken of it on each axis. Measures do not
-/// depend on the order of boxes. Each can be taken in another process.
+/// The subset of the sampled boxes that a space is fitted to, and three measures of this subset on each axis. Measures do not depend on
+/// the order of boxes, and several processes can compute one measure each.
 class OCTOPAIR_PRIVATE_EXPORT SpaceSample {
 public:
     /// `sampled`: number of boxes in the sample.

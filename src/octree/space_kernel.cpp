@@ -34,7 +34,7 @@ template <typename D, typename Bounds>
 auto load_ends(D d, const Bounds& bounds) {
     const float* const numbers = bounds.min;
     const auto low = hn::LoadU(d, numbers);
-    if constexpr (sizeof(Bounds) == 6 * sizeof(float)) {  // nothing may be read beyond the box
+    if constexpr (sizeof(Bounds) == 6 * sizeof(float)) {  // does not read beyond the end of the box
         return std::pair(low, hn::Shuffle0321(hn::LoadU(d, numbers + 2)));
     } else {
         return std::pair(low, hn::LoadU(d, numbers + 3));
@@ -58,7 +58,7 @@ void cells_simd(const SpaceMap& map, std::span<const Bounds> bounds, std::span<C
         return hn::ShiftRight<SpaceMap::fine_bits>(hn::And(hn::BitCast(words, hn::Add(clamped, whole)), kept));
     };
     for (std::size_t i = 0; i < bounds.size(); ++i) {
-        // Both ends are read before one is written: the processor mistakes addresses 4 KiB apart for the same (4K aliasing).
+        // Reads both ends before it writes one. Otherwise a read may wait for a write to an address 4 KiB away (4K aliasing).
         const auto [low, high] = load_ends(floats, bounds[i]);
         const auto lo = cell(low);
         hn::Store(lo, words, boxes[i].lo.data());

@@ -16,10 +16,10 @@ struct SliceParameters {
     bool wide, padded;
 };
 
-/// The function that a rank calls. `cancelled`: any function; the call was cancelled before it began.
+/// The function that a rank calls: a search, gather_pairs(), or `cancelled`: any function whose call was cancelled before it began.
 enum class CallKind : std::uint8_t { search, gather, cancelled };
 
-/// Parameters of a rank's call. Sent to all ranks. Those behind the kind are the parameters of a search.
+/// Parameters of a rank's call. Sent to all ranks. Only searches use the members after `kind`.
 struct CallParameters {
     CallKind kind = CallKind::search;
     OutputKind output_kind;
@@ -60,8 +60,8 @@ std::string_view difference(const CallParameters& a, const CallParameters& b) {
     return {};
 }
 
-/// Returns the first rank with objects of a set, or the last rank if there is none. Other ranks must have its precision and
-/// padding.
+/// Returns the first rank with objects of a set, or the last rank if no rank has objects. All ranks with objects must use the precision
+/// of that rank, and have paddings if that rank has paddings.
 std::size_t first_rank_with_objects(const std::vector<CallParameters>& all, unsigned set) {
     std::size_t rank = 0;
     while (rank + 1 < all.size() && all[rank].slices[set].size == 0) ++rank;

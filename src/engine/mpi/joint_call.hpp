@@ -59,8 +59,8 @@ private:
     }
 };
 
-// The first message of a call has the same form for all kinds of calls. So ranks that make different calls detect it, and do not wait
-// without end.
+// The first message of a call has the same form for all kinds of calls. So ranks that make different calls detect the difference and
+// throw, instead of waiting forever for messages that no rank sends.
 
 /// Collective. Combines the searches of all ranks into one. `max_objects`: maximum number of objects of all ranks together.
 /// Throws: the same Error on all ranks if the options or sizes of a rank are invalid, or if the ranks' calls differ.

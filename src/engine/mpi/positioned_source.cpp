@@ -8,14 +8,14 @@
 namespace octopair {
 
 void PositionedSource::PlaceTable::fill(std::span<const std::uint32_t> positions) {
-    constexpr std::size_t mean = 2;  // number of positions of a table element
+    constexpr std::size_t mean = 2;  // average number of positions for each element of `starts`
     if (positions.empty()) return;
     base = positions.front();
     const std::uint64_t range = std::uint64_t(positions.back()) - base + 1;
     while ((range >> shift) > positions.size() / mean + 1) ++shift;
     starts.assign(std::size_t(range >> shift) + 2, std::uint32_t(positions.size()));
     for (auto place = std::uint32_t(positions.size()); place-- > 0;) starts[(positions[place] - base) >> shift] = place;
-    // An element without positions begins where the next element begins.
+    // An element whose range has no positions gets the start of the next element, so its range of places is empty.
     for (std::size_t i = starts.size() - 1; i-- > 0;) starts[i] = std::min(starts[i], starts[i + 1]);
 }
 
@@ -40,7 +40,7 @@ PlainBoxes PositionedSource::plain(std::size_t begin, std::size_t count) const {
     return plain;
 }
 
-/// Returns the set and the position of an object.
+/// Returns the set that an object belongs to, and its position within that set.
 PositionedSource::Named PositionedSource::named(std::uint32_t object) const {
     const bool in_second = join() && object >= positions_.second_begin;
     return {in_second ? 1u : 0u, in_second ? object - positions_.second_begin : object};
@@ -55,7 +55,8 @@ std::uint32_t PositionedSource::place(std::uint32_t object) const {
     return std::uint32_t(std::size_t(at - positions.begin()) + (set == 1 ? positions_.of_set[0].size() : 0));
 }
 
-/// Replaces objects by their places. Prefetches for all objects what place() reads, so that look-ups do not wait in turn.
+/// Replaces objects by their places. First prefetches, for all objects, the table elements and positions that place() reads. So the
+/// look-ups wait for memory at the same time, not one after another.
 void PositionedSource::find_places(std::span<std::uint32_t> objects) const {
     for (const std::uint32_t object : objects) {
         const auto [set, position] = named(object);

@@ -1,5 +1,5 @@
-// PositionedSource: the objects that a rank received, as the entries of an octree. Objects have their positions as numbers, so
-// that pairs need no renumbering.
+// PositionedSource: presents the objects that a rank received as entries of an octree. An entry's object number is the position of the
+// object among the objects of all ranks. So pairs that a scan finds need no renumbering.
 //
 // Invariants 1. The positions of the received objects ascend, set after set.
 #pragma once
@@ -21,7 +21,7 @@ struct ObjectPositions {
 
 class PositionedSource final : public EntrySource, public PairRule {
 public:
-    /// Borrows both. `boxes`: the received objects, by their places.
+    /// Borrows both arguments. `boxes`: the received objects. The place of an object is its number in `boxes`.
     PositionedSource(const BoxSource& boxes, const ObjectPositions& positions);
 
     std::size_t size() const override { return boxes_.size(); }
@@ -38,15 +38,15 @@ public:
     void load_bounds(std::span<Entry> entries) const override;
 
 private:
-    /// Finds the places of ascending positions. Positions [base + (i << shift), base + ((i + 1) << shift)) are at the places
-    /// [starts[i], starts[i + 1]): a few, so that a look-up reads two or three cache lines.
+    /// Lookup table from positions to places. Positions [base + (i << shift), base + ((i + 1) << shift)) are at the places
+    /// [starts[i], starts[i + 1]). These are few places, so a look-up reads two or three cache lines.
     struct PlaceTable {
         std::uint32_t base = 0;
         unsigned shift = 0;
         std::vector<std::uint32_t> starts;
 
         void fill(std::span<const std::uint32_t> positions);
-        /// Returns the start of the element of `position`. The next start follows it.
+        /// Returns the address of starts[i] for the i whose range contains `position`. starts[i + 1] follows it in memory.
         const std::uint32_t* start(std::uint32_t position) const { return &starts[(position - base) >> shift]; }
     };
     struct Named {

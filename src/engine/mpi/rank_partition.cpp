@@ -39,7 +39,7 @@ OctantOwners RankSearch::route(RankCall& rank_call, const BoxSource& own, const 
     const OctreeLayout& shared = planning.shared();
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, rank_call.stops);
-    std::vector<std::uint32_t> entries;  // of each octant
+    std::vector<std::uint32_t> entries;  // number of entries of each octant
     std::optional<Routing> routing;
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.route);

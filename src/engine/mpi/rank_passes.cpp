@@ -8,8 +8,8 @@
 
 namespace octopair {
 
-/// Passes the pairs of a share of the work to another writer, without those that the filter of the call drops. Polls for stop requests,
-/// because a share may write pairs for minutes.
+/// Passes the pairs of a share to another writer, except pairs that WantedRows excludes. Polls for stop requests of other ranks, because
+/// a share may write pairs for minutes.
 class RankExecutor::Writer final : public ShareWriter {
 public:
     Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
@@ -53,7 +53,7 @@ private:
     unsigned writes_ = 0;
 };
 
-/// Polls on the calling thread only, because MPI may be limited to one thread.
+/// Polls only if this is the thread of the call, because MPI may be limited to one thread.
 void RankExecutor::poll_stops() {
     if (std::this_thread::get_id() == thread_) stops_.poll();
 }

@@ -18,7 +18,7 @@
 namespace octopair {
 
 /// Runs the shares of a rank on another executor. Shares that run on the calling thread poll for stop requests of other ranks. Drops
-/// pairs that are not wanted.
+/// pairs that `wanted` excludes.
 /// Requires: construction on the thread of the call. Only that thread polls for stop requests.
 class RankExecutor final : public Executor {
 public:

@@ -115,7 +115,7 @@ void RankSearch::find(RankCall& rank_call) {
 
 void RankSearch::search(RankCall& rank_call, const detail::Request& own_octants) {
     const BoxSource source(own_octants.first, own_octants.second, rank_call.joint.form);
-    // The call has a stop source of its own: if this rank abandons its part of a pass, as at a limit, other ranks continue.
+    // This call has its own stop source. If this rank abandons its part of a pass, for example at a limit, the other ranks continue.
     Call call{own_octants, rank_call.output, source, {}, rank_call.progress, {}};
     const std::stop_callback forward(rank_call.stop.get_token(), [&] { call.stop.request_stop(); });
     if (rank_call.indexed != nullptr) {
@@ -133,8 +133,8 @@ void RankSearch::search(RankCall& rank_call, const detail::Request& own_octants)
 
 namespace {
 
-/// Returns how many pairs of a rank's piece are within the limit. Stores the number of all pairs, limited, in `summary`.
-/// `pieces`: number of pairs of each rank.
+/// Returns how many pairs of a rank's piece are within Options::limit. Stores the number of pairs of all ranks, up to the limit, in
+/// `summary`. `pieces`: number of pairs of each rank.
 std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, const Options& options,
                       Summary& summary) {
     const std::uint64_t all = std::accumulate(pieces.begin(), pieces.end(), std::uint64_t(0));
@@ -145,7 +145,7 @@ std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, c
     return std::min(pieces[rank], limit - std::min(limit, before));
 }
 
-/// Passes up to `allowance` pairs of `give` to the output. Returns their number.
+/// Lets `give` pass its pairs to the output, up to `allowance` pairs. Returns the number of pairs that were passed.
 template <typename Give>
 std::uint64_t receive(const detail::Output& output, std::uint64_t allowance, const Give& give) {
     Receiver receiver(output, allowance);
@@ -210,7 +210,7 @@ void RankSearch::gather(PairList& piece, detail::PairStorage& all) {
         join_gather(comm_);
     } catch (...) {
         std::stop_source stop;
-        StopRelay(comm_, stop).end();  // as the other ranks in run()
+        StopRelay(comm_, stop).end();  // collective: the other ranks call end() in run()
         throw;
     }
     gather_pieces(piece, all);
@@ -302,8 +302,9 @@ void RankSearch::find_octal(RankCall& rank_call, Call& call) {
         (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), rank_call.request.options, rank_call.summary);
 }
 
-/// Rank 0 streams its pairs while each other rank lists its own. A rank whose pairs do not fit into its buffer drops them, and
-/// finds them again when it is its turn to send. Returns the number of this rank's pairs.
+/// Rank 0 streams its pairs to its sink while each other rank collects its pairs in a list. Then the other ranks send their pairs in turn.
+/// A rank whose pairs do not fit into its buffer drops the list, and scans again when its turn comes. Returns the number of this rank's
+/// pairs.
 std::uint64_t RankSearch::relay_octal(RankCall& rank_call, Call& call, const OctalPairs& own) {
     bool listed = false;
     std::uint64_t pairs = 0;
@@ -360,7 +361,7 @@ void RankSearch::find_ascending(RankCall& rank_call, Call& call) {
 
 /// Lists this rank's pairs in found_. Returns false, with found_ empty, if there are more than about `most` pairs.
 bool RankSearch::list_octal(Call& call, std::uint64_t most) {
-    // A list that keeps memory of an earlier call fills that memory without a request, so its size would not be bounded.
+    // A list that has memory from an earlier call would fill this memory before it asks for more, so `most` would not bound its size.
     if (most < ~std::uint64_t(0)) found_ = PairList();
     detail::PairStorage& list = detail::storage_of(found_);
     std::uint64_t bytes = 0;
@@ -384,7 +385,7 @@ bool RankSearch::list_octal(Call& call, std::uint64_t most) {
 void RankSearch::find_windows(RankCall& rank_call, Call& call) {
     const RowBins bins(rank_call.joint.totals[0]);
     std::vector<std::uint64_t> counts;
-    // It has pairs if those of this rank fitted into the buffer, but not those of another rank.
+    // found_ still has pairs here if the pairs of this rank fitted into the buffer, and those of another rank did not.
     detail::storage_of(found_).reset();
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.scan);
@@ -393,7 +394,7 @@ void RankSearch::find_windows(RankCall& rank_call, Call& call) {
     });
     comm_.add_up(counts);
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
-    // For some time a rank stores the pairs of a window three times: as found, as sent, and as received.
+    // During the exchange a rank stores a window's pairs three times: the list of found pairs, the sent copy, and the received pairs.
     const std::uint64_t fit = std::max<std::uint64_t>(1, call.buffer_pairs() / 3);
     const unsigned windows = unsigned(all / (fit * comm_.size()) + 1);
     const PiecePlan plan(bins, counts, {comm_.size(), windows, rank_call.relay.has_value()});

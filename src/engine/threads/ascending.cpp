@@ -19,7 +19,7 @@ public:
 
 private:
     Pair* fresh() override {
-        constexpr std::size_t pages_at_once = 64;  // at least
+        constexpr std::size_t pages_at_once = 64;  // minimum number of pages of a block
         if (--left_ < 0) throw OverBudget{};
         if (block_.size() < page_pairs()) block_ = list_.take_block(pages_at_once * page_pairs());
         Pair* page = block_.data();
@@ -73,7 +73,7 @@ public:
     }
 
     void append_sorted(Team& team, const std::stop_token& stop, const OnSorted& on_sorted) {
-        pages_left_ = std::numeric_limits<std::int64_t>::max();  // splitting a bucket takes a few more pages
+        pages_left_ = std::numeric_limits<std::int64_t>::max();  // no limit: splitting a bucket takes more pages
         std::vector<BucketSort::Runs> sorted(plan_.buckets());
         team.for_each(sorted.size(), [&](std::size_t bucket, unsigned worker) {
             std::vector<PageString> strings;

@@ -27,11 +27,12 @@ public:
     CellFaces(const Space& space, const BoxSource& source) : map_(space.map()) {
         if (!source.exact()) origin_ = source.rounding().origin;
     }
-    /// Returns where the cell begins: the map rounds to the nearest fine cell. Never falls as the cell grows.
+    /// Returns the coordinate at which the cell begins, half a fine cell lower because the map rounds to the nearest fine cell. Monotone: a
+    /// greater cell never gets a smaller coordinate.
     double face(std::uint32_t cell, unsigned axis) const {
         constexpr auto largest = double(FLT_MAX);
         const double fine = double(std::uint64_t(cell) << SpaceMap::fine_bits) - 0.5;
-        // No cell begins farther away: in the map, a difference above FLT_MAX overflows and gets the last cell.
+        // Limits the offset to FLT_MAX: in the map, a greater difference overflows and gets the last cell, so no cell begins there.
         const double offset = std::min(fine / double(map_.scale[axis]), largest);
         return origin_[axis] + std::clamp(double(map_.origin[axis]) + offset, -largest, largest);
     }

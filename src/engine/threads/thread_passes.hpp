@@ -27,9 +27,9 @@ protected:
     LinearOctree& octree() { return octree_; }
     /// Returns the rule that decides which entries of the octree are pairs.
     virtual const PairRule& pair_rule(const Call& call) const { return call.source; }
-    /// Scans the whole octree once.
+    /// Scans the whole octree once, and passes its pairs to the writers of `executor`.
     virtual void scan_into(Call& call, Executor& executor, double progress);
-    /// Scans `octants` once.
+    /// Scans `octants` once, and passes their pairs to the writers of `executor`.
     void scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress);
 
 private:

@@ -18,7 +18,7 @@
 
 namespace octopair {
 
-/// Base of writers that need the pairs, not only their number.
+/// Base class of writers that process each pair, not only the number of pairs.
 class OCTOPAIR_PRIVATE_EXPORT FullWriter : public ShareWriter {
 public:
     bool counting() const final { return false; }

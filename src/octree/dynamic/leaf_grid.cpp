@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-constexpr float small_numbers = 254;  // numbers of a SmallBox, without 0 (begins before the unit) and one for rounding
+constexpr float small_numbers = 254;  // of the 256 numbers of 8 bits: 0 means before the unit, one more covers rounding
 
 }  // namespace
 
@@ -33,7 +33,7 @@ SmallBox Unit::small(const CellBox& box) const {
 CellBox Unit::cells(const SmallBox& box) const {
     CellBox cells;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        // All cells that are rounded down to this number, and one more cell for the rounding of the product.
+        // Returns how many cells have numbers below `number`. The callers allow for one more cell, because the product is rounded.
         const auto cells_of = [&](unsigned number) { return std::uint32_t(float(number) / scale[axis]); };
         const std::uint32_t last = lo[axis] + cells_of(unsigned(small_numbers)) - 1;
         const std::uint32_t begin = lo[axis] + cells_of(box.lo(axis) < 2 ? 0 : box.lo(axis) - 1u);
@@ -43,14 +43,14 @@ CellBox Unit::cells(const SmallBox& box) const {
     return cells;
 }
 
-/// Returns the scale of a unit with 2^side cells on the axis.
+/// Returns the scale (numbers of a SmallBox for each cell) of a unit that has 2^side cells of the space on an axis.
 float LeafGrid::scale_of(unsigned side) {
     constexpr unsigned exponent_zero = 127, fraction_bits = 23;
     return small_numbers * std::bit_cast<float>((exponent_zero - side) << fraction_bits);
 }
 
-/// Halves the cells on the axis on which they are longest relative to the boxes in them. Stops when a cell holds few boxes, or
-/// when a further cut would multiply the entries.
+/// Halves the cells of the grid repeatedly, each time on the axis on which cells are longest in units of the mean box extent. Stops when
+/// a cell is expected to hold few boxes, or when a further cut would multiply the entries.
 LeafGrid LeafGrid::cut(const Octant& octant, std::uint32_t begin, std::span<const CellBox> boxes) {
     LeafGrid grid{
         {octant.lo[0], octant.lo[1], octant.lo[2]}, begin, std::uint8_t(octant.level), {}, !octant.leaf(), false};

@@ -2,8 +2,8 @@
 //
 // Invariants
 //   A leaf is cut into a grid of cells, 2^bits on each axis, so that a cell holds a few entries. An inner octant is not cut.
-//   The units of a grid are the whole octant, which is its own unit, and the cells. They are numbered from `begin` on, the own
-//   unit first.
+//   The units of a grid are the octant's own unit, which is the whole octant, and the cells. Units have consecutive numbers from `begin`
+//   on; the own unit is number `begin`.
 #pragma once
 
 #include <array>
@@ -51,7 +51,7 @@ struct alignas(32) LeafGrid {
     bool inner;  ///< true if the octant is not a leaf
     bool used;   ///< true if the own unit may hold entries
 
-    /// Cuts an octant for `boxes`, which have entries in the octant. `begin`: number of the grid's first unit.
+    /// Cuts an octant into cells that suit `boxes`, the boxes with entries in the octant. `begin`: number of the grid's first unit.
     static LeafGrid cut(const Octant& octant, std::uint32_t begin, std::span<const CellBox> boxes);
     /// Returns the number of units.
     std::size_t units() const { return inner ? 1 : 1 + (std::size_t(1) << (bits[0] + bits[1] + bits[2])); }
@@ -66,7 +66,7 @@ struct alignas(32) LeafGrid {
     bool keeps(const CellBox& box, unsigned natural) const {
         return (inner ? level == natural : level <= natural) && touches(box);
     }
-    /// True if the cells keep the entries of a box that touches the cells `range`; otherwise the own unit keeps an entry.
+    /// True if each cell of `range` keeps an entry of a box that touches these cells. Otherwise the own unit keeps the box's only entry.
     bool keeps_in(const GridRange& range) const {
         constexpr std::uint32_t max_cells_per_entry = 8;
         return !inner && range.count() <= max_cells_per_entry;

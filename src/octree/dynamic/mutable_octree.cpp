@@ -15,10 +15,10 @@ namespace octopair {
 
 namespace {
 
-// Prefetch distances of what a visit reads, in visits.
+// How many visits ahead run() prefetches the data that a visit reads.
 constexpr std::size_t ahead_head = 24, ahead_first = 14, ahead_next = 6;
 
-/// True if two boxes overlap or are adjacent on each axis, so that joined() is no longer than both together on each axis.
+/// True if two boxes overlap or are adjacent on each axis. Then joined() is on no axis longer than the two boxes together.
 bool near(const CellBox& a, const CellBox& b) {
     bool is_near = true;
     for (unsigned axis = 0; axis < 3; ++axis) is_near &= a.lo[axis] <= b.hi[axis] + 1 && b.lo[axis] <= a.hi[axis] + 1;
@@ -34,7 +34,7 @@ CellBox joined(const CellBox& a, const CellBox& b) {
     return both;
 }
 
-/// One in this many ranges of octants is built first.
+/// build() first adds one of this many ranges of octants, and predicts from it the memory for all ranges.
 constexpr std::size_t sample_stride = 32;
 
 /// Divides the octants into at least `sample_stride` ranges if there are enough entries. Returns the first octant of each
@@ -108,7 +108,7 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     for (std::size_t i = 0; i < count; ++i) {
         for_each_octant_below(tops[i], box, visit);
         if (!inner_used_) continue;
-        // The ancestors of this top. An ancestor of an earlier top has been visited, and so have all above it.
+        // Visits the ancestors of this top. Ends at an ancestor of an earlier top: it has been visited, and so have its ancestors.
         for (OctantIndex octant = tops[i]; octant != 0;) {
             octant = octants[octant].parent;
             const auto above = [&](OctantIndex top) { return octant < top && top < octants[octant].next; };
@@ -118,7 +118,7 @@ void MutableOctree::for_each_touched_octant(const CellBox& box, Visit&& visit) c
     }
 }
 
-/// Octants are added in ranges, each as one share. The first ranges predict the memory of all.
+/// Adds octants in ranges; a range is a share. A few ranges are added first, to predict the memory that all ranges need.
 void MutableOctree::build(const LinearOctree& octree, const LoadBounds& load_bounds, Executor& executor,
                           const std::stop_token& stop) {
     clear();
@@ -134,8 +134,8 @@ void MutableOctree::build(const LinearOctree& octree, const LoadBounds& load_bou
     try {
         const std::size_t first = (ranges + sample_stride - 1) / sample_stride;
         executor.for_each(first, [&](std::size_t i) { add(i * sample_stride); });
-        // Reserved memory is committed only when it is used, but an array that grows exists twice for a while. So twice what
-        // is expected is reserved, also for later changes.
+        // Reserves twice the expected memory, which also leaves room for later changes. Reserved memory is committed only when it is
+        // used. An array that had to grow later would exist twice for a while.
         const std::uint64_t of_one = 2 * (ranges / std::max<std::size_t>(1, first) + 1);
         units_.reserve(units_.blocks() * of_one, units_.units() * of_one);
         executor.for_each(ranges - first, [&](std::size_t i) { add(i + i / (sample_stride - 1) + 1); });
@@ -280,7 +280,7 @@ void MutableOctree::visit_unit(const Unit& unit, NearestVisitor& visitor) const 
     });
 }
 
-/// A search of a change, and the boxes whose entries are removed and added with it.
+/// One search of a change, the box whose entries the change removes, and the box whose entries the change adds.
 struct MutableOctree::Work {
     std::uint32_t number;
     std::uint32_t object;
@@ -295,7 +295,7 @@ struct MutableOctree::Work {
 
 void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& out) const {
     const LeafGrid& grid = grids_[octant];
-    // Where entries of a box are kept: in some cells, in the own unit, or in neither.
+    // The units of this octant that keep entries of a box: some cells, the own unit, or no unit.
     struct Keepers {
         GridRange cells = GridRange::empty();
         bool own = false;
@@ -319,7 +319,7 @@ void MutableOctree::list_octant(OctantIndex octant, const Work& work, Visits& ou
     if (grid.inner) return;
     const GridRange range = grid.range_of(work.wanted);
     if (range.count() > tuning().dynamic.max_listed_visits) {
-        out.visits.resize(out.visits.size() + tuning().dynamic.max_listed_visits + 1);  // marks too many visits
+        out.visits.resize(out.visits.size() + tuning().dynamic.max_listed_visits + 1);  // makes list() return false
         return;
     }
     grid.for_each_cell(range, [&](const Unit& unit, const GridRange::Place& at) {
@@ -357,7 +357,8 @@ bool MutableOctree::list(const OctreeChange& change, std::uint32_t number, Visit
     if (listed) return true;
     out.visits.resize(visits);
     out.first_used.resize(first_used);
-    // The change is made before the listed ones, whose searches must find its object. So its octants count as first used, too.
+    // The caller makes this change before all listed changes, whose searches must find the changed object. So its octants also count as
+    // used for the first time.
     if (!change.exists) return false;
     for_each_home_unit(*after, [&](const Unit& unit, OctantIndex octant) {
         if (unit.index == grids_[octant].begin && !grids_[octant].used) out.first_used.push_back(octant);

@@ -41,7 +41,7 @@ struct OctreeChange {
     CellBox before, after;  ///< the object's box before (if it existed) and after (if it exists)
 };
 
-/// Which box of a changed object a search is around: bits of UnitVisit::around and Hit::around.
+/// Bits of UnitVisit::around and Hit::around: whether a search looks for boxes that overlap the object's box before or after the change.
 enum : std::uint8_t { around_before = 1, around_after = 2 };
 
 /// Operations of a change in a unit: a search, then the removal of an entry, then the addition of an entry.
@@ -49,7 +49,7 @@ struct UnitVisit {
     std::uint32_t unit;
     std::uint32_t change;  ///< number of the change
     std::uint32_t object;
-    std::uint8_t around;  ///< boxes that the search is around; 0: no search
+    std::uint8_t around;  ///< around_before, around_after or both; 0: no search
     bool take, put;       ///< whether an entry is removed, and added
     SmallBox wanted;      ///< box of the search
     SmallBox entry;       ///< box of the entry that is added
@@ -71,13 +71,13 @@ public:
     virtual double at_least(const Box3d& region) const = 0;
     /// Returns the distance beyond which objects are not wanted. May shrink during the search.
     virtual double limit() const = 0;
-    /// Receives an object that may be near enough. May be called more than once for an object.
+    /// Receives an object that may be within limit(). The search may pass an object more than once.
     virtual void take(std::uint32_t object) = 0;
 };
 
 class MutableOctree {
 public:
-    /// Sets the bounds of entries whose object is set.
+    /// A function that sets the bounds of entries. The caller of the function has set their objects.
     using LoadBounds = std::function<void(std::span<Entry>)>;
     /// Replaces the contents by the entries of `octree`. `load_bounds` must give the bounds that `octree` was built with; it
     /// is called concurrently.
@@ -95,12 +95,12 @@ public:
     void insert(std::uint32_t object, const CellBox& box);
     /// Removes an object. `box`: the box with which the object was inserted.
     void erase(std::uint32_t object, const CellBox& box);
-    /// Appends the objects whose cells overlap `box`, each once, in no particular order. May append objects near them, too.
+    /// Appends the objects whose cells overlap `box`, each once, in no particular order. May also append objects that are only near `box`.
     void search(const CellBox& box, std::vector<std::uint32_t>& found) const;
-    /// Passes the objects that are near enough to `visitor`, nearest regions first.
+    /// Passes all objects within visitor.limit() to `visitor`. Visits nearer regions before farther regions.
     void search(NearestVisitor& visitor) const;
 
-    /// The visits of some changes.
+    /// The visits of units that some changes need.
     struct Visits {
         std::vector<UnitVisit> visits;
         std::vector<OctantIndex> first_used;  ///< octants whose own unit gets its first entry
@@ -114,8 +114,8 @@ public:
     bool list(const OctreeChange& change, std::uint32_t number, Visits& out) const;
     /// Prefetches data for list() of a change.
     void prefetch(const OctreeChange& change) const;
-    /// Makes searches visit the own units of `octants`. Must be called with all of Visits::first_used; then all changes must be
-    /// listed again.
+    /// Marks the own units of `octants` as used, so that searches visit these units. Call it with all of Visits::first_used, and then list
+    /// all changes again.
     void use(std::span<const OctantIndex> octants);
     std::uint32_t units() const { return units_.units(); }
     /// Makes room for visits that add `puts` entries.

@@ -40,7 +40,7 @@ struct alignas(64) SmallBlock {
 };
 static_assert(sizeof(SmallBlock) == 128);
 
-/// True if the two boxes are reported as a hit in their unit: the specification of overlapping().
+/// True if the unit of the two boxes must report them as a hit. This is the specification of overlapping().
 inline bool overlap(const SmallBox& a, const SmallBox& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         if (a.lo(axis) > b.hi(axis) || b.lo(axis) > a.hi(axis)) return false;

@@ -52,13 +52,13 @@ public:
     template <typename Visit>
     void for_each(std::uint32_t unit, Visit&& visit) const;
 
-    // Prefetch the data of a later call for the unit. The three are called in this order, with some time between them.
+    // Three steps that prefetch the data of a unit for a later call. Call them in this order, with some time between two steps.
     void prefetch_head(std::uint32_t unit) const;
     void prefetch_first(std::uint32_t unit) const;
     void prefetch_next(std::uint32_t unit) const;
 
 private:
-    /// The first of some new units, and the first of their blocks.
+    /// Numbers of the first new unit and of the first new block.
     struct Place {
         std::uint32_t unit, block;
     };
@@ -67,10 +67,9 @@ private:
     void free_block(std::uint32_t block);
     void prefetch_block(std::uint32_t block) const;
 
-    std::shared_mutex arrays_;  // add(): held by threads that fill blocks; exclusively by one that moves the arrays
+    std::shared_mutex arrays_;           // add(): shared lock to fill blocks, exclusive lock to move the arrays
     GrowingArray<std::uint32_t> heads_;  // first block of each unit
-    std::mutex
-        mutex_;  // guards the numbers of units and the number of blocks and the list of free ones, not what is in blocks
+    std::mutex mutex_;  // guards the counts of units and blocks and the list of free blocks, not the contents of blocks
     GrowingArray<SmallBlock> blocks_;
     std::uint32_t free_ = SmallBlock::none;  // first of the free blocks
 };

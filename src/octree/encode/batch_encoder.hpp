@@ -33,16 +33,17 @@ struct GhostGroup {
     alignas(64) std::array<std::array<CellEntry, most>, corners> entries;  ///< by corner of the box and crosser
     std::array<std::array<std::uint32_t, most>, corners> octants;
     std::array<std::uint8_t, corners> present;  ///< by corner: bit mask of the crossers that have this ghost
-    /// Bit mask of the crossers without ghosts here: a leaf is deep or finer than the home, or the box is too large for its home.
+    /// Bit mask of the crossers whose ghosts the caller must find by the general rule (octants_of.hpp). A leaf is deep or finer than the
+    /// home leaf, or the box is too large for its home leaf.
     std::uint32_t left_out;
 };
 
 class BatchEncoder {
 public:
-    /// Borrows both. `no_list`: number for boxes without a home entry.
+    /// Borrows `space` and `directory`. `no_list`: the list number of boxes that are too large for a leaf.
     BatchEncoder(const Space& space, const Directory& directory, std::uint32_t no_list);
 
-    /// Encodes boxes. Returns false if one of them is no valid box. Its entry is then unspecified.
+    /// Encodes boxes. Returns false if a box is invalid; the entry of an invalid box is unspecified.
     bool encode(const PlainBoxes& boxes, EncodedBatch& batch) const;
     bool encode_scalar(const PlainBoxes& boxes, EncodedBatch& batch) const;
     /// Encodes entries. The entries of the batch have their objects and masks.

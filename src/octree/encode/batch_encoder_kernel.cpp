@@ -47,14 +47,14 @@ HWY_INLINE void store_entries(D d, Lanes (&numbers)[4], CellEntry* out) {
     }
 }
 
-/// Returns the octant's cells of fine cells that lie in the octant.
+/// Converts fine cells within an octant of `level` to the octant's own cells.
 HWY_INLINE Lanes octant_cells(const Lanes& fine_cell, const Lanes& level) {
     const Words d;
     const auto aligned = hn::And(hn::Shl(fine_cell, level), hn::Set(d, SpaceMap::last_fine_cell));
     return hn::ShiftRight<int(OctantCells::max_fine_level)>(aligned);
 }
 
-/// Replaces the ends of boxes whose leaves are deep: their cells are counted from the leaves' own origins.
+/// Replaces the ends of boxes in deep leaves by cells that are counted from the origin of the leaf.
 HWY_INLINE void replace_deep(const BatchEncoder& encoder, const Lanes& leaf, const Loaded& box, Lanes (&words)[4]) {
     const Words d;
     const Floats floats;

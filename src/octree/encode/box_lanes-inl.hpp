@@ -81,7 +81,7 @@ struct Constants {
     static HWY_INLINE hn::Mask<Words> is_deeper(const Lanes& element) {
         return hn::Gt(element, hn::Set(Words(), Directory::further - 1));
     }
-    /// Returns the positions of fine cells in the first table.
+    /// Returns the positions of the elements that the first table has for fine cells.
     HWY_INLINE Lanes first_position(const Lanes (&cells)[3]) const {
         const Words d;
         const int shift = int(table.shift + SpaceMap::fine_bits);
@@ -89,8 +89,8 @@ struct Constants {
                                  hn::ShiftRightSame(cells[1], shift));
         return hn::Add(hn::Mul(row, hn::Set(d, table.sizes[0])), hn::ShiftRightSame(cells[0], shift));
     }
-    /// Returns the positions of fine cells in the tables that `found` refers to, below octants of 2^`left` cells on each axis;
-    /// 0 for a leaf.
+    /// Returns the positions of the elements for fine cells in the next tables. `found`: elements that refer to these tables, whose octants
+    /// have 2^`left` cells on each axis. The position is 0 if `found` is a leaf.
     HWY_INLINE Lanes next_position(const Lanes& found, unsigned left, const Lanes (&cells)[3]) const {
         const Words d;
         const unsigned levels = table.levels_below(left);
@@ -137,7 +137,7 @@ HWY_INLINE Loaded load_lanes(const Box3f* boxes, std::uint32_t object) {
 HWY_INLINE Loaded load_lanes(const Entry* entries, std::uint32_t) {
     const Floats floats;
     Lanes first[4], second[4];
-    const float* const numbers = entries->min;  // of all eight numbers of an entry
+    const float* const numbers = entries->min;  // the first of the eight numbers of an entry
     load_numbers(numbers, 8, first);            // min x, y, z, max x
     load_numbers(numbers + 4, 8, second);       // max y, z, object, mask
     Loaded loaded;
@@ -194,8 +194,8 @@ HWY_INLINE void low_cells(const Constants& constants, const Loaded& box, Lanes (
     for (unsigned axis = 0; axis < 3; ++axis) cells[axis] = constants.fine_cell(box.low[axis], axis);
 }
 
-/// Prefetches the elements that the leaves of boxes are looked up in: those of all boxes in the first table, then those in the
-/// tables below. So the look-ups of many boxes wait for memory at the same time.
+/// Prefetches the table elements that a later look-up of the boxes' leaves reads: first the elements of all boxes in the first table, then
+/// the elements in the next tables. So the look-ups of many boxes wait for memory at the same time.
 template <typename Item>
 HWY_NOINLINE void prefetch_leaves(const Constants& constants, std::span<const Item> items) {
     const Words d;

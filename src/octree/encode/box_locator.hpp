@@ -44,7 +44,7 @@ struct LocatedBatch : CrosserBatch {
 };
 
 using BatchEntries = std::array<Entry, max_encoded>;
-/// Stores boxes as entries without mask. Returns false if one of them is no valid box.
+/// Converts boxes to entries with mask 0. Returns false if a box is invalid.
 bool make_entries(const PlainBoxes& plain, BatchEntries& entries);
 
 class OCTOPAIR_PRIVATE_EXPORT BoxLocator {
@@ -52,13 +52,14 @@ public:
     /// Borrows both.
     BoxLocator(const Space& space, const Directory& directory);
 
-    /// Returns false if one of the boxes is no valid box. Its leaves are then unspecified.
+    /// Finds the leaves of boxes. Returns false if a box is invalid; the leaves of an invalid box are unspecified.
     bool locate(std::span<const Box3f> boxes, LocatedBatch& batch) const;
     bool locate_scalar(std::span<const Box3f> boxes, LocatedBatch& batch) const;
     void locate(std::span<const Entry> entries, LocatedBatch& batch) const;
     void locate_scalar(std::span<const Entry> entries, LocatedBatch& batch) const;
 
-    /// Specification of one box. Returns its leaf. Appends the box to the crossers if it reaches beyond the leaf.
+    /// Specification of locate() for one box. Returns the leaf that the box begins in. Appends the box to `crossers` if it reaches beyond
+    /// this leaf.
     Directory::Leaf locate(const Entry& entry, std::uint32_t position, CrosserBatch& crossers) const;
 
     SpaceMap map;

@@ -61,7 +61,7 @@ private:
         return true;
     }
 
-    /// Returns the entry of a box of the batch, without class bits of this octree.
+    /// Returns a box of the batch as an entry. Its mask has no class bits of this octree yet.
     Entry whole_entry(std::uint32_t position) const {
         if (plain_.boxes.empty()) return loaded_[position];
         Entry entry{};
@@ -111,7 +111,7 @@ private:
             if (octant == home_octant) return;
             const OctantCells cells(steps_.space, steps_.directory.octants()[octant]);
             Entry ghost = whole;
-            ghost.mask |= begins;  // added to the bits that it has (octree/reporting_octant.hpp)
+            ghost.mask |= begins;  // adds class bits to those of octrees around this one (octree/reporting_octant.hpp)
             append_ghost(std::uint32_t(steps_.memory.ghost_list(octant)), cells.entry(ghost), home);
         });
     }
@@ -133,7 +133,7 @@ private:
     Writer writer_;
     EncodedBatch batch_;
     PlainBoxes plain_;                       // boxes of the batch, or none
-    std::array<Entry, max_encoded> loaded_;  // entries of the batch unless it has plain boxes
+    std::array<Entry, max_encoded> loaded_;  // entries of the batch, unless plain_ has its boxes
 };
 
 }  // namespace

@@ -35,8 +35,8 @@ struct OCTOPAIR_PRIVATE_EXPORT BuildMemory {
     /// Makes room for the given numbers of objects, blocks, octants and ranges of octants.
     void resize(std::size_t objects, std::size_t blocks, std::size_t octants, std::size_t octant_ranges);
 
-    /// Two lists for each octant: list i has the home entries of octant i, list `octants` + i its ghosts. A home entry is in the
-    /// leaf that the box begins in; ghosts are all others.
+    /// Two lists for each octant: list i has the home entries of octant i, and list `octants` + i has its ghosts. A home entry is the
+    /// entry in the leaf that the box begins in. All other entries are ghosts.
     ChunkLists lists;
     Buffer<std::uint64_t> begins;  // by octant: number of entries in the octants before, within the octant's range
     Buffer<std::uint64_t> totals;  // by range of octants: number of entries

@@ -10,7 +10,7 @@ namespace octopair {
 void ChunkLists::resize(std::size_t blocks, std::size_t lists, std::size_t max_entries_per_block) {
     blocks_ = blocks;
     lists_ = lists;
-    // On average a list leaves half a chunk unused. Smaller chunks bound the sum.
+    // On average, half a chunk of each list stays unused. If there are many lists, smaller chunks limit the unused memory.
     chunk_size_ = tuning().build.max_chunk;
     while (chunk_size_ > min_chunk && lists * chunk_size_ * tuning().build.chunk_part > max_entries_per_block) {
         chunk_size_ /= 2;

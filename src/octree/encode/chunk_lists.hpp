@@ -94,9 +94,9 @@ public:
     }
     /// Prefetches the line that the next entry of the list is written to.
     void prefetch_end(std::uint32_t list) const { prefetch(entries_ + heads_[list]); }
-    /// Must be called after at most ChunkLists::min_chunk - 1 entries were discarded.
+    /// Empties the list that discards entries. Between two calls, at most ChunkLists::min_chunk - 1 entries may be discarded.
     void reset_discarded() { heads_[of_.lists_] = 1; }
-    /// An entry is in its list as soon as it is appended: nothing is staged (StagedWriter).
+    /// Always false: unlike a StagedWriter, this writer has no stage that can be full.
     static constexpr bool full() { return false; }
     void flush() {}
     /// Makes the lists readable.

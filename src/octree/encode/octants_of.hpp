@@ -17,7 +17,7 @@ inline bool within(const CellBox& box, unsigned level) {
     return ((box.lo[0] ^ box.hi[0]) | (box.lo[1] ^ box.hi[1]) | (box.lo[2] ^ box.hi[2])) >> (deepest - level) == 0;
 }
 
-/// Returns the axes, as bits, on which `box` reaches into further octants of `level`.
+/// Returns a bit mask of the axes on which `box` touches more than one octant of `level`.
 inline unsigned crossed_axes(const CellBox& box, unsigned level) {
     const unsigned shift = deepest - level;
     unsigned crossed = 0;
@@ -36,8 +36,8 @@ inline Cell corner_of(const CellBox& box, unsigned corner) {
 }
 
 /// Calls place(octant, class bits) for each octant that gets an entry of `box`, first for the octant that the box begins in.
-/// `home`: the leaf that the box begins in. At its natural level and above, the corners of a box reach all octants that the
-/// box touches. If several corners lie in one coarser leaf, the lowest corner counts.
+/// `home`: the leaf that the box begins in. At the natural level of a box and above, each octant that the box touches holds a
+/// corner of the box. A coarser leaf may hold several corners. Then place() is called for the lowest of these corners only.
 /// Requires: `box` reaches beyond `home`.
 template <typename Place>
 void for_each_octant_of(const CellBox& box, const Directory& directory, Directory::Leaf home, Place&& place) {

@@ -14,7 +14,7 @@ namespace {
 
 using SampledBoxes = SampledOctant::Boxes;
 
-/// Copies boxes into the `list` of each child of `octant` that they touch.
+/// Copies each box into the list `list` of each child of `octant` that the box touches.
 /// Requires: all boxes touch `octant`.
 void hand_down(const OctantCube& octant, const SampledBoxes& boxes, std::array<SampledOctant, 8>& below,
                SampledBoxes SampledOctant::*list) {

@@ -36,7 +36,7 @@ public:
         staged.list = list;
         std::memcpy(staged.entry, &entry, sizeof(CellEntry));
     }
-    /// No effect: flush() discards entries.
+    /// Does nothing: flush() empties the list that discards entries.
     void reset_discarded() {}
     /// True if flush() must be called before a further batch of `max_batch` entries.
     bool full() const { return free_ + needed_ > chunks_; }

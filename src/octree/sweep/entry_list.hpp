@@ -1,7 +1,7 @@
-// EntryList: a crowd of entries.
+// EntryList: the entries of an octant that is too crowded for a single sweep.
 //
-// A crowd can be the whole scene. Then it holds only 8 bytes an entry, and the bounds are loaded from the caller's boxes, some at
-// a time, whenever a step needs them. A smaller crowd is made of whole entries, whose bounds lie closer together in memory.
+// A list has one of two forms. A list of EntryId has 8 bytes for each entry, because it may have all objects of the scene; load() reads the
+// bounds from the caller's boxes. A list of Entry, for fewer entries, has their bounds, so it reads less scattered memory.
 #pragma once
 
 #include <algorithm>
@@ -18,13 +18,13 @@
 
 namespace octopair {
 
-/// An entry without its bounds.
+/// An entry without bounds. A PairRule loads the bounds of `object` when a step needs them.
 struct EntryId {
     std::uint32_t object;
     std::uint32_t mask;
 };
 
-/// Entries of a span: all, or those at some positions. Borrows the spans and the pair rule.
+/// A list of entries: all elements of a span, or the elements at some positions of the span. Borrows the spans and the pair rule.
 class EntryList {
 public:
     EntryList() = default;
@@ -40,7 +40,7 @@ public:
 
     /// Loads the entries from `begin` on.
     void load(std::size_t begin, std::span<Entry> out) const;
-    /// Loads the sampled entries.
+    /// Loads the entries whose positions in this list are in the sample.
     void load(const Sample& sample, std::vector<Entry>& out) const;
     /// Loads the entries at the keys' positions in the span, in the order of the keys.
     void load(std::span<const SortKey> keys, Buffer<Entry>& out) const;
@@ -66,7 +66,7 @@ private:
     void load_at(const PositionAt& position_at, std::span<Entry> out) const;
 
     std::span<const Entry> whole_;
-    const PairRule* rule_ = nullptr;  // of ids_; null if the entries are whole
+    const PairRule* rule_ = nullptr;  // loads the bounds of ids_; null if whole_ has the entries
     std::span<const EntryId> ids_;
     std::span<const std::uint32_t> positions_ = {};
     bool all_ = true;

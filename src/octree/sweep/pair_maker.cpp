@@ -21,7 +21,7 @@ bool oriented(const Entry& row, const Entry& column, const Orientation& orientat
     return true;
 }
 
-/// Clears each bit of `hit` that is in `asked` and for which keep(row, column) is false.
+/// Calls keep(row, column) for each bit of `hit` that is also in `asked`. Clears the bits for which keep() returns false.
 template <typename Keep>
 void filter(HitMask& hit, std::uint32_t asked, Keep&& keep) {
     for (; asked != 0; asked &= asked - 1) {

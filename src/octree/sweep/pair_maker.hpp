@@ -36,7 +36,7 @@ struct ScanContext {
     std::stop_token stop;
     ScanMemoryPool& memory;  ///< lends memory to each share
     unsigned nesting = 0;    ///< number of octrees around the scanned one
-    double growth = 1;       ///< product, over the nested octrees, of their entries / the entries that they are made of
+    double growth = 1;       ///< product over all nestings of (entries of the nested octree / entries before it)
     std::optional<OutermostOctant> outermost = {};  ///< set only with test hooks
 };
 

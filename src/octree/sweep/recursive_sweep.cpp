@@ -78,7 +78,7 @@ struct TileSweep {
             LoadedTile row_tile(rows, axis), column_tile(columns, axis);
             for (std::size_t t = i * share; t < std::min((i + 1) * share, tiles); ++t) {
                 sweep(t, row_tile.load(t), column_tile, maker);
-                // A set's last tile of columns is often the next tile of rows.
+                // In a self sweep, the tile of columns that was loaded last is often the next tile of rows: reuse it.
                 if (kind == SweepKind::self) std::swap(row_tile, column_tile);
             }
             maker.flush();
@@ -110,15 +110,15 @@ private:
     }
 };
 
-/// A SweepInput between rows and columns that owns its positions.
+/// A SweepInput between rows and columns that owns the positions of its rows and columns in their lists.
 struct OwnedJoin {
     EntryList row_entries;
     EntryList column_entries;
     std::shared_ptr<const std::vector<std::uint32_t>> rows;
     std::shared_ptr<const std::vector<std::uint32_t>> columns;
     Orientation orientation = {};
-    unsigned depth = 0;                 // number of splits that made it
-    unsigned settled = 0;               // number of settled axes: their orientation is given, they need no more splits
+    unsigned depth = 0;                 // number of splits from the whole join to this join
+    unsigned settled = 0;               // number of settled axes: on these, all rows and columns overlap
     std::array<unsigned, 3> axes = {};  // in the order in which they are settled
 
     EntryList row_list() const { return row_entries.at(*rows); }
@@ -156,8 +156,8 @@ float split_value(const OwnedJoin& join, unsigned axis, std::array<float, 2> ran
     return next;
 }
 
-/// Maximum number of splits that lead to a join. On each of three axes, two splits halve the columns at least. They are fewer than 2^32, so
-/// 33 halvings leave none. Only boxes that change during the search are split more often.
+/// Maximum number of splits from the whole join to a part. On each of three axes, two successive splits at least halve the number of
+/// columns, which is below 2^32. So 33 halvings leave no column. Only boxes that change during the search need more splits.
 constexpr unsigned max_depth = 3 * 2 * 33;
 
 /// Returns smaller joins that together find the pairs of `join`.

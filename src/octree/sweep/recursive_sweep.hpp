@@ -26,14 +26,15 @@
 
 namespace octopair {
 
-/// Throws: Error{cancelled}.
+/// Finds the pairs of `join` by one sweep along `axis`, tile by tile. Throws: Error{cancelled}.
 void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor);
 
-/// Returns the positions of a list, parted by the axes (as bits) on which a box is longer than a quarter of the list's extent.
+/// Divides the entries of a list into eight groups by shape, and returns the positions of each group. Bit k of a group's number is set if
+/// its boxes are longer on axis k than a quarter of the extent of the whole list.
 /// Throws: Error{cancelled}.
 std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list, const std::stop_token& stop);
 
-/// Requires: `join` has no orientation.
+/// Finds the pairs of `join` by the recursion that the head of this file describes. Requires: `join` has no orientation.
 /// Throws: Error{cancelled}.
 void recursive_sweep(const ScanContext& context, const SweepInput& join, Executor& executor);
 

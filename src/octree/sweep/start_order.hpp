@@ -47,8 +47,8 @@ inline bool comes_before(const Entry& a, const Entry& b, unsigned axis) {
     return a.min[axis] != b.min[axis] ? a.min[axis] < b.min[axis] : a.object < b.object;
 }
 
-/// Order of numbers in which NaN comes last. Boxes that change during a search may be NaN. With NaN, `<` is not a strict weak order,
-/// which sorting requires.
+/// Order of floats in which NaN comes last. With NaN, `<` is not the strict weak order that sorting requires. Bounds may become NaN if
+/// the caller changes the boxes during a search.
 struct NanLast {
     bool operator()(float a, float b) const { return a < b || (b != b && a == a); }
 };
@@ -56,7 +56,7 @@ struct NanLast {
 /// Sorts keys with an LSD radix sort by low end, in shares of `executor`.
 /// Requires: the keys ascend by position.
 /// Throws: Error{cancelled}.
-/// Complexity: the memory of the keys once more while it runs.
+/// Complexity: while it runs, it needs as much memory again as the keys.
 void radix_sort(Buffer<SortKey>& keys, Executor& executor, const std::stop_token& stop);
 
 /// Sorts boxes for a sweep, and keeps its memory between calls.

@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-/// True if a sweep of this kind tests the column for the row, and the two overlap and share no bit of their masks.
+/// True if a sweep of this kind must test the row against the column, and if their boxes overlap and their masks share no bit.
 bool hit(const Sweep& sweep, std::size_t row, std::size_t column) {
     const auto& [rows, columns, kind] = sweep;
     if (kind == SweepKind::self && column <= row) return false;

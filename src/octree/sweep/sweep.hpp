@@ -117,10 +117,10 @@ std::size_t sweep_rows_scalar(const Sweep& sweep, SweepCursor& cursor, std::span
 std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs);
 inline constexpr std::size_t max_hits = block_size;  ///< maximum number of hits of a HitMask
 
-/// Returns depths of overlap, by axis. Rounding cannot have caused a hit of the sweep that is deeper on all axes.
+/// Returns a depth of overlap for each axis. A hit whose boxes overlap deeper on all axes is certain: rounding cannot have caused it.
 Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack);
 
-/// Clears the hits that are not deep() (boxes/entry.hpp).
+/// Clears the hits whose boxes do not overlap by more than `depths` on all axes: deep() (boxes/entry.hpp).
 void keep_deep(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits);
 
 /// Returns the instruction set that sweep_rows uses on this machine, such as "AVX2".
@@ -128,7 +128,7 @@ std::string sweep_instruction_set();
 /// For tests: true allows only the baseline instruction set, false allows all.
 void restrict_sweep_to_baseline(bool baseline_only);
 
-/// start_rows() of cross and cross_strict sweeps.
+/// Moves `cursor` to the first column of its rows, for cross and cross_strict sweeps. Called by start_rows() only.
 void start_crossing_rows(const Sweep& sweep, SweepCursor& cursor);
 
 /// Moves `cursor` to the first column of its rows, unless the cursor is there already. Shared by all versions.

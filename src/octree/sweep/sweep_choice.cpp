@@ -62,7 +62,7 @@ std::uint64_t SweepChooser::tests(const Measured& rows, const Measured& columns,
     return sum * columns.stride * rows.stride;
 }
 
-/// Returns an estimate of the number of rows and columns that overlap, from a few rows.
+/// Tests a few rows against the sampled columns. Returns an estimate of the number of pairs of a row and a column that overlap.
 std::uint64_t SweepChooser::hits(const EntryList& rows, const Measured& columns) {
     const Sample tried(rows.size(), 1, tuning().sweep.tried_rows);
     rows.load(tried, tried_rows_);
@@ -72,7 +72,7 @@ std::uint64_t SweepChooser::hits(const EntryList& rows, const Measured& columns)
         for (const Entry& column : columns.entries) found += overlap(tried_rows_[r], column) ? 1 : 0;
         if (r == 3 && found <= 4) {
             count_path(Path::hits_few);
-            return 0;  // at most one hit for each row so far: few in any case
+            return 0;  // on average at most one hit for each of four rows, so there are few hits in total
         }
     }
     return found * tried.stride() * columns.stride;

@@ -17,7 +17,7 @@
 
 namespace octopair {
 
-/// A search for the overlapping pairs within a set (`self`), or between rows and columns.
+/// Input of a search for overlapping pairs: pairs within `rows` if `self` is true, otherwise pairs of a row and a column.
 struct SweepInput {
     EntryList rows;
     EntryList columns;  ///< the list of rows if `self`
@@ -27,29 +27,29 @@ struct SweepInput {
     std::size_t size() const { return rows.size() + (self ? 0 : columns.size()); }
 };
 
-/// The cheapest axis. `good`: a sweep along this axis has few tests for each box, or few for each pair.
+/// The axis with the fewest tests. `good`: a sweep along this axis makes few tests in relation to the number of boxes or of pairs.
 struct SweepChoice {
     unsigned axis = 0;
     bool good = false;
 };
 
-/// Keeps its memory between calls.
+/// Estimates the cost of sweeps from samples. Keeps its memory between calls.
 /// Thread safety: one thread at a time.
 class SweepChooser {
 public:
     explicit SweepChooser(std::stop_token stop) : stop_(std::move(stop)) {}
 
-    /// Throws: Error{cancelled}.
+    /// Returns the one of `axes` with the fewest tests, and whether a sweep along it is cheap. Throws: Error{cancelled}.
     SweepChoice choose(const SweepInput& join, std::span<const unsigned> axes = all_axes);
 
-    /// Returns the axes, those first along which a sweep of each row over the columns has the fewest tests.
+    /// Returns the axes in ascending order of the number of tests that a sweep of rows over columns makes along the axis.
     /// Throws: Error{cancelled}.
     std::array<unsigned, 3> by_cost(const SweepInput& join);
 
 private:
     static constexpr std::array<unsigned, 3> all_axes = {0, 1, 2};
 
-    /// Some entries of a list. Each stands for `stride` entries.
+    /// Sampled entries of a list. Each sampled entry represents `stride` entries.
     struct Measured {
         std::vector<Entry> entries;
         std::size_t stride = 1;

@@ -1,7 +1,7 @@
 // SIMD version of the sweep. Highway compiles it for each instruction set; one is chosen at run time.
 //
-// A register of columns is tested against the rows of a block, one row after another. The number of columns differs from row
-// to row, and so is mispredicted; a block of 8 rows has at most one such misprediction.
+// A register of columns is tested against the rows of a block, one row after another. The number of columns differs from row to row, so
+// the processor mispredicts the end of a loop over columns. With blocks of 8 rows, this happens at most once for 8 rows.
 // Hits are queued as masks, without a branch on whether there are any. Dense scenes mispredict that branch: writing the pairs
 // separately from the sweep was 1.5 times faster there.
 #undef HWY_TARGET_INCLUDE

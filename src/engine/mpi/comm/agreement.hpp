@@ -49,7 +49,7 @@ private:
     std::stop_source& stop_;
     std::function<void()> on_poll_;
     bool sent_ = false;   // this rank has sent its stop request
-    bool known_ = false;  // no stop is to be sent or received any more: all ranks have it, or the call ends
+    bool known_ = false;  // true: all ranks have a stop request, or the call ends. Sends and receives no stop any more
 };
 
 class Agreement {

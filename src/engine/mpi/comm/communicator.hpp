@@ -1,5 +1,5 @@
-// Communicator: typed wrapper of the MPI functions that the engine uses. Counts all traffic. Beside it the processor time of a rank
-// without MPI (CostMeter), and the pauses of a rank that must probe (Backoff).
+// Communicator: typed wrapper of the MPI functions that the engine uses. Counts all traffic.
+// CostMeter: measures the processor time of a rank outside MPI. Backoff: pauses a rank between two probes for messages.
 //
 // Calls      functions that send or receive are collective, unless their comment says otherwise: all ranks call them, in the
 //            same order.
@@ -28,8 +28,8 @@
 
 namespace octopair {
 
-/// Data that one rank has sent to others. How MPI implements its collective functions is unknown, so usual algorithms are
-/// assumed. Data for all ranks counts once for each other rank, in about log2(ranks) messages. A sum of n bytes counts as
+/// Bytes and messages that one rank has sent to other ranks. MPI does not tell how it implements its collective functions, so the counts
+/// assume usual algorithms. Data for all ranks counts once for each other rank, in about log2(ranks) messages. A sum of n bytes counts as
 /// 2 n (ranks - 1) / ranks bytes, in twice as many messages.
 struct Traffic {
     std::uint64_t bytes = 0, messages = 0;

@@ -65,7 +65,7 @@ void Heartbeat::check_silence(Clock::time_point now) {
 void Heartbeat::end() {
     const std::vector<std::uint64_t> sent = comm_.all_gather(sent_);
     if (comm_.rank() != 0) return;
-    // Nothing can wake this rank but the messages, which only a probe sees.
+    // MPI cannot wake this thread when a heartbeat arrives, so the thread probes for heartbeats and pauses between the probes.
     const Backoff backoff;
     for (receive(); received_ != sent; receive()) backoff();
 }

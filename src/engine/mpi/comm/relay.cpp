@@ -20,7 +20,7 @@ void Relay::forward(unsigned from, const Give& give) {
 }
 
 void Relay::send(unsigned from, const Give& give) {
-    bool thrown_on_all = false;  // true while exceptions come from send_held(), which throws them on all ranks
+    bool thrown_on_all = false;  // true during send_held(), whose exceptions are already thrown on all ranks
     const auto send_batch = [&] {
         thrown_on_all = true;
         send_held(from);

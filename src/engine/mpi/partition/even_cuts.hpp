@@ -17,7 +17,7 @@ inline std::vector<std::size_t> even_cuts(std::span<const std::uint64_t> work, s
     std::vector<std::size_t> begins = {0};
     std::uint64_t before = 0;
     for (std::size_t item = 0; item < work.size(); ++item) {
-        // An item that a cut would fall into goes to the side that has more of it.
+        // If an even cut would divide an item, the item goes to the part that has more than half of it.
         const double middle = double(before) + double(work[item]) / 2;
         while (begins.size() < parts && middle > all * double(begins.size()) / double(parts)) begins.push_back(item);
         before += work[item];
@@ -26,14 +26,14 @@ inline std::vector<std::size_t> even_cuts(std::span<const std::uint64_t> work, s
     return begins;
 }
 
-/// Returns cuts like even_cuts(), with the smallest possible work of the largest part, within one thousandth. Later parts may have
-/// less work than earlier ones.
+/// Returns cuts in the form of even_cuts(). Minimizes the work of the part with most work: it exceeds the minimum by at most about a
+/// thousandth of the mean. Later parts may have less work than earlier parts.
 /// Source: Pinar, Aykanat 2004, Fast optimal load balancing algorithms for 1D partitioning.
 inline std::vector<std::size_t> least_cuts(std::span<const std::uint64_t> work, std::size_t parts) {
     std::vector<std::uint64_t> sums(work.size() + 1, 0);
     std::inclusive_scan(work.begin(), work.end(), sums.begin() + 1);
     std::vector<std::size_t> begins;
-    // Fills one part after another with at most `most`. Returns false if items are left.
+    // Fills one part after another with items of at most `most` work. Returns false if items are left after the last part.
     const auto fill = [&](std::uint64_t most) {
         begins = {0};
         while (begins.size() <= parts) {

@@ -18,8 +18,8 @@ struct ObjectArrays {
     Buffer<Box3f> boxes = {};
     Buffer<Box3d> wide_boxes = {};
     Buffer<double> padding = {};
-    Buffer<std::uint32_t> positions = {};       ///< of the objects in the set
-    Buffer<std::uint16_t> near_positions = {};  ///< their lowest bits (Routing::near_position)
+    Buffer<std::uint32_t> positions = {};       ///< position of each object in its set
+    Buffer<std::uint16_t> near_positions = {};  ///< lowest bits of each position (Routing::near_position)
     Buffer<std::uint64_t> indices = {};
 
     std::size_t size() const { return indexed ? indices.size() : near ? near_positions.size() : positions.size(); }

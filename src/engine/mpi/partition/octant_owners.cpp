@@ -9,12 +9,13 @@ namespace octopair {
 
 namespace {
 
-/// Cost of all work on an entry besides tests and pairs: as much as so many box tests, or as so many pairs. Measured.
+/// Cost of the work on an entry apart from box tests and pairs, in box tests and in pairs: this work takes as long as 64 box tests, or as
+/// 8 pairs. Measured.
 constexpr double tests_per_entry_cost = 64;
 constexpr double pairs_per_entry_cost = 8;
 
-/// Returns the estimated work in each octant; 1: the cost of an entry without tests. A sweep tests each entry against the entries
-/// that overlap it on the sweep's axis. A left octant is divided further until these are few.
+/// Returns the estimated work in each octant, in units of the cost of an entry without tests and pairs. A sweep tests each entry against
+/// the entries that overlap it on the sweep's axis. The owner divides a left octant until each entry has few such tests.
 std::vector<std::uint64_t> work_of(const SharedTop& top, std::span<const std::uint32_t> entries) {
     std::vector<std::uint64_t> work(entries.size());
     for (std::size_t octant = 0; octant < work.size(); ++octant) {

@@ -21,9 +21,9 @@ namespace octopair {
 
 class OctantOwners {
 public:
-    /// Divides the octants of `top` into runs, so that the largest work of a run is as small as possible. The result depends only
-    /// on the arguments. `directory`: the same octants; borrowed. `entries`: number of entries of each octant on all ranks, in
-    /// any unit.
+    /// Divides the octants of `top` into one run for each rank, so that the run with most work has as little work as possible. The
+    /// result depends only on the arguments. `directory`: of the octants of `top`; borrowed. `entries`: number of entries of each
+    /// octant, summed over all ranks, in any unit.
     OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint32_t> entries,
                  unsigned ranks);
 
@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    /// Calls place() for the owners of `octant` and of its descendants that the box touches.
+    /// Calls place(rank) for the owner of `octant`, and for the owner of each descendant that the box touches.
     /// Requires: the box touches `octant`.
     template <typename Place>
     void add_owners(const CellBox& box, OctantIndex octant, Place& place) const {

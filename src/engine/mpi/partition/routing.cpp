@@ -125,7 +125,7 @@ void Routing::assign_owners(Block& block) {
 }
 
 void Routing::share(Block& block, std::span<const Crosser> crossers) const {
-    // Between the first and the last octant of a reach there may be octants that the box does not touch.
+    // Objects whose owners only the box shows: octants between the first and the last octant of a reach may not touch the box.
     std::vector<std::size_t> unclear;
     for (const Crosser& crosser : crossers) {
         if (!crosser.reach.only) unclear.push_back(crosser.object);
@@ -184,8 +184,8 @@ template <typename T, typename Value>
 struct ColumnSource {
     ColumnSource(T* to_sent, T* to_own, Value of_object) : sent(to_sent), own(to_own), value(std::move(of_object)) {}
 
-    T* sent;      // by receiving rank
-    T* own;       // for objects that stay on this rank; if null, these have a part of `sent`
+    T* sent;      // ordered by receiving rank
+    T* own;       // receives the objects that stay on this rank; if null, `sent` receives them
     Value value;  // returns the property of an object
 };
 
@@ -193,7 +193,7 @@ struct ColumnSource {
 template <typename T, typename Value>
 class Column {
 public:
-    /// `counts`: number of objects for each rank; `before`: those of them in the blocks before.
+    /// `counts`: number of objects for each rank; `before`: how many of these objects are in earlier blocks.
     Column(const ColumnSource<T, Value>& source, const RankCounts& counts, const RankCounts& before, unsigned own_rank)
         : value_(source.value) {
         T* sent = source.sent;

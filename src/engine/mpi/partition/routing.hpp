@@ -39,7 +39,7 @@ class Routing {
     struct Block {
         unsigned set = 0;
         ObjectBlock objects = {};                // of the source
-        std::optional<std::size_t> bad = {};     // first object of the first batch with an invalid box
+        std::optional<std::size_t> bad = {};     // begin of the first batch that has an invalid box
         std::vector<Crosser> crossers = {};      // objects whose boxes extend beyond their home leaf; ascending
         RankCounts counts = {};                  // number of objects for each rank
         std::vector<std::uint32_t> owners = {};  // for each object marked `several_`: number of owners, then the owners
@@ -90,9 +90,9 @@ public:
     /// Arrays that pack() fills.
     struct Packed {
         unsigned rank;          ///< this rank
-        ObjectArrays& sent;     ///< ordered by receiving rank. Only names, not boxes, for this rank itself
+        ObjectArrays& sent;     ///< ordered by receiving rank; for objects that stay on this rank it has only the names
         ObjectArrays& own;      ///< receives the boxes and paddings of objects that stay on this rank
-        std::size_t own_place;  ///< place of the first of them
+        std::size_t own_place;  ///< place in `own` of the first object that stays on this rank
     };
     /// Copies the objects of a set to `to`. Names are indices, near positions or positions, as `to.sent` says. `objects`: this
     /// rank's slice of the set. Requires: assign_owners(); the arrays are large enough.

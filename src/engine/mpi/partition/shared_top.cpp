@@ -34,24 +34,24 @@ public:
     }
 
 private:
-    static constexpr double fraction_unit = 1 << 10;  // sums of fractions count in this unit
+    static constexpr double fraction_unit = 1 << 10;  // fractions are summed as integers, in units of 1 / fraction_unit
 
     enum class State : std::uint8_t { left, whole, divided };
     struct Octant {
         OctantCube octant;
         State state = State::left;
-        std::uint32_t below = 0;  // number of the first of its eight children, by level
-        OctantIndex number = 0;   // in pre-order
+        std::uint32_t below = 0;  // index in octants_ of the first of its eight children
+        OctantIndex number = 0;   // its number in the pre-order of `top`
         double shortest = 0, overlap = 0;
     };
     /// A box of the sample and an octant that it touches.
     struct Touched {
-        std::uint32_t octant;  // number by level
+        std::uint32_t octant;  // index in octants_
         std::uint32_t box;
         bool kept = false;
         std::uint8_t below = 0;  // bit mask of the children that it touches
     };
-    /// Sums over the boxes of an octant.
+    /// The quantities that are summed over the boxes of an octant, by their place in the array of sums.
     enum Sum : std::uint8_t {
         inside,
         kept,
@@ -63,7 +63,7 @@ private:
         sums_per_octant
     };
 
-    /// Returns the sums of the octants from `first_` on, over this rank's boxes.
+    /// Returns the sums for each octant from `first_` on. Only the boxes of this rank count.
     std::vector<std::uint32_t> count() {
         std::vector<std::uint32_t> sums(sums_per_octant * (octants_.size() - first_), 0);
         for (Touched& box : touched_) count(box, &sums[sums_per_octant * (box.octant - first_)]);
@@ -83,14 +83,14 @@ private:
         for (unsigned axis = 0; axis < 3; ++axis) {
             const double extent = double(cells.hi[axis] - cells.lo[axis]) / side;
             least = std::min(least, extent);
-            // The part of the positions at which a box of equal extent overlaps this box.
+            // Fraction of the positions in the octant at which a second box of equal extent overlaps this box.
             part *= std::min(1.0, 2 * extent);
         }
         sums[shortest] += std::uint32_t(least * fraction_unit);
         sums[overlapped] += std::uint32_t(part * fraction_unit);
     }
 
-    /// Divides the octants from `first_` on by the sums of all ranks, and hands their boxes down to the children.
+    /// Decides by the sums over all ranks which octants from `first_` on are divided. Hands the boxes of these octants down to children.
     void divide(std::span<const std::uint32_t> sums) {
         const std::size_t end = octants_.size();
         for (std::size_t i = first_; i < end; ++i) decide(i, &sums[sums_per_octant * (i - first_)]);

@@ -29,9 +29,9 @@ public:
     struct SharedOctant {
         OctantCube octant;
         bool left;  ///< the owner may divide this octant further
-        // Means over its boxes in the sample.
+        // Means over the sampled boxes that touch the octant.
         double shortest;  ///< extent on the shortest axis, in sides of the octant
-        double overlap;   ///< estimated part of the boxes in the octant that a box overlaps
+        double overlap;   ///< estimated fraction of the octant's boxes that one of its boxes overlaps
     };
 
     /// Collective. Divides octants until each one has at most `most` boxes of the sample, or is not to be divided. `own`: cells

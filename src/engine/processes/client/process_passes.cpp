@@ -77,7 +77,7 @@ void ProcessPasses::show_progress(Call& call, PassProgress& shown) {
     if (done > shown.done) call.progress.add(done - std::exchange(shown.done, done));
 }
 
-/// Adds the times of the slowest worker to the summary: all workers leave a step together.
+/// Adds the times of the slowest worker to the summary, because each step lasts until all workers have finished it.
 void ProcessPasses::take_results(Call& call) {
     StepSeconds steps;
     for (unsigned i = 0; i < pass_.workers; ++i) {

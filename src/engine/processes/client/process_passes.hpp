@@ -44,7 +44,7 @@ private:
     WorkerPool& pool_;
     SharedInputs inputs_;
     std::shared_ptr<Region> arena_;
-    std::vector<std::shared_ptr<Region>> pairs_;  // free for use if this is their only owner
+    std::vector<std::shared_ptr<Region>> pairs_;  // for pairs; a region that no list owns as well is free
     Pass pass_;
     std::vector<std::shared_ptr<Region>> regions_;  // needed by each pass of the call, apart from the pairs' region
 };

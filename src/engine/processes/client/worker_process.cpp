@@ -24,8 +24,8 @@ namespace octopair {
 
 namespace {
 
-/// A thread that lives as long as this process, and starts the workers. The system sends a worker its parent-death signal when the
-/// thread ends that started the worker, not only when the process ends.
+/// A thread that starts the workers, and lives as long as this process. The system sends the parent-death signal to a worker when the
+/// thread that started the worker ends. A thread of the application may end long before its process.
 class Spawner {
 public:
     Spawner() : owner_(::getpid()) {
@@ -79,7 +79,7 @@ void run_on_spawner(const std::function<void()>& work) {
 
 constexpr auto wait_by_handle = idtype_t(3);  // P_PIDFD, which not all headers have
 
-/// One of so many polls also reads /proc, which costs more.
+/// One poll in this many also reads the state from /proc, which takes longer than the other steps of a poll.
 constexpr unsigned polls_per_proc_read = 8;
 
 [[noreturn]] void throw_cannot_start(const std::string& program, int error) {
@@ -88,7 +88,7 @@ constexpr unsigned polls_per_proc_read = 8;
                 "cannot start the worker program " + program + ": " + std::strerror(error));
 }
 
-/// Returns true if the process ended within the time; -1: waits without a limit.
+/// Waits for the end of a process. Returns true if it ended within the time. A time of -1 sets no limit.
 bool wait_for_end(const Descriptor& handle, int max_milliseconds) {
     pollfd waiting{handle.number(), POLLIN, 0};
     int ready = 0;
@@ -125,7 +125,7 @@ WorkerProcess::WorkerProcess(const std::string& program, unsigned slot) : owner_
     }
     if (error != 0) throw_cannot_start(program, error);
     handle_ = Descriptor(int(::syscall(SYS_pidfd_open, id_, 0)));
-    if (!handle_.open() && errno != ESRCH) {  // ESRCH: it has ended, and the application has waited for it
+    if (!handle_.open() && errno != ESRCH) {  // ESRCH: the worker has ended already, and the application has reaped it
         const int reason = errno;
         ::kill(id_, SIGKILL);
         while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {

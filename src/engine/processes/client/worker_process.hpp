@@ -50,7 +50,7 @@ private:
 
     pid_t id_ = -1;
     unsigned polls_ = 0;
-    pid_t owner_;        // the only process that may kill the worker: not one forked from it
+    pid_t owner_;        // process that started the worker; a child forked from it must not kill the worker
     Descriptor handle_;  // pidfd
     Descriptor socket_;
     std::set<std::uint32_t> regions_;  // regions that were sent

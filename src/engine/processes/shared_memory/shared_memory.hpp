@@ -16,8 +16,8 @@
 
 namespace octopair {
 
-/// Returns the size of files whose use is not known in advance: the memory of this machine, or less where limits of the
-/// process (RLIMIT_FSIZE, RLIMIT_AS) require it.
+/// Returns the size for files that must be created before their content is known. It is the memory of this machine, or less if limits
+/// of the process (RLIMIT_FSIZE, RLIMIT_AS) require it.
 std::uint64_t max_region_bytes();
 
 class SharedMemory {

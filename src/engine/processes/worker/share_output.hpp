@@ -1,7 +1,7 @@
 // ShareOutput: the output for the pairs of a worker's shares. Each kind of pass has its own output.
 //
-// The pairs of a share become visible together, when the share is done. Only in a stream, each block becomes visible as soon
-// as it is full.
+// The client sees the pairs of a share all at once, when the share is done. Only in a stream, it sees each block as soon as the block is
+// full.
 #pragma once
 
 #include <memory>

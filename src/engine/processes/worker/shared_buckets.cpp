@@ -31,7 +31,8 @@ public:
         : place_(place), taken_(place.view.slot(place.shares.slot()).pages_taken) {}
 
     void set_unlimited() { limited_ = false; }
-    /// Resets the number of pages to that of the last commit. Returns pages that a dead worker took later to the budget.
+    /// Sets the number of taken pages to `taken`, the number at the last commit. Gives the pages that a dead worker took after this commit
+    /// back to the budget.
     void restore(std::uint64_t taken) {
         place_.view.control_block().pages_left.fetch_add(std::int64_t(taken_.exchange(taken) - taken));
     }

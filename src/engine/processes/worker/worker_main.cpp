@@ -17,8 +17,8 @@
 
 namespace {
 
-/// Makes the system kill this process when its parent ends. start_child() has done that, but another program may have started this one.
-/// Ends this process if the parent has ended before: the parent is the process that made the socket.
+/// Makes the system kill this process when its parent ends. start_child() does this too, but another program may have started this
+/// process. Ends this process if the parent, which made the socket, has ended before this call.
 void die_with_parent() {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ucred maker{};
