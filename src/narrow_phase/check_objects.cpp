@@ -55,7 +55,8 @@ void check_pose(const Pose& pose, const Geometry& geometry, const std::string& w
     }
 }
 
-/// Checks that sums and differences of a few coordinates of convex shapes are finite. Meshes are judged otherwise.
+/// Checks that the coordinates of a posed convex shape are so small that sums and differences of a few of them are finite. Does nothing
+/// for planes and meshes.
 void check_reach(const Pose& pose, const Geometry& geometry, const std::string& whose) {
     constexpr double most = 0x1p1020;
     const detail::PreparedShape& shape = detail::prepared(geometry);

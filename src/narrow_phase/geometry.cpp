@@ -21,7 +21,7 @@ void check_length(double value, const std::string& what) {
     if (!(value > 0) || !std::isfinite(value)) {
         refuse_geometry(what + " is " + std::to_string(value) + "; it must be finite and above 0");
     }
-    // Smaller numbers have fewer digits, so a pair of such objects cannot be judged.
+    // Subnormal numbers have fewer digits, so pair tests of such objects would not be accurate.
     if (value < std::numeric_limits<double>::min()) {
         refuse_geometry(what + " is below 2.3e-308, the least number of float64 that has all digits");
     }
@@ -149,7 +149,7 @@ ShapeBounds bounds_of(const detail::PreparedShape& made, const std::vector<Point
     const bool points = solid.core == ConvexSolid::Core::points;
     const double core =
         points ? farthest_from(bounds.centre, vertices.empty() ? solid.points : vertices) : reach(solid);
-    // The factor covers the rounding of the centre, of differences, of squares and of their sum.
+    // The factor covers the rounding errors of the radius: of the centre, of differences, of squares and of their sum.
     bounds.radius = (core + solid.radius) * (1 + 16 * std::numeric_limits<double>::epsilon());
     if (!std::isfinite(bounds.radius))
         refuse_geometry("a shape is too large: the radius of its bounding sphere is beyond float64");

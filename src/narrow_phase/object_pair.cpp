@@ -47,15 +47,15 @@ bool same_parameters(const ConvexSolid& a, const ConvexSolid& b) {
     return a.core == b.core && a.extents == b.extents && a.radius == b.radius && a.points.size() == b.points.size();
 }
 
-/// Returns true if the objects have the same kind of shape and equal sizes, and meshes equal triangles, and if no corner is further
-/// than `tolerance` from its counterpart. For curved shapes the corners are those of their box. A shape that a symmetry maps to
-/// itself is the same only in the same position.
+/// Returns true if the objects have the same kind of shape, equal sizes and (meshes) equal triangles, and if no corner is farther than
+/// `tolerance` from the same corner of the other object. Corners of shapes without vertices are those of their bounding box. So a cube
+/// and its copy that is turned by 90 degrees are not duplicates.
 bool are_duplicates(const PosedObject& a, const PosedObject& b, double tolerance) {
     const shape::Any &first = a.geometry.shape, &second = b.geometry.shape;
     if (first.index() != second.index() || std::holds_alternative<shape::Plane>(first)) return false;
     if (const auto* mesh = std::get_if<shape::Mesh>(&first)) {
         const auto& other = std::get<shape::Mesh>(second);
-        // Places first: those of different objects differ at the first vertex.
+        // Compare places first: in most pairs of different objects, the first vertices already differ.
         return are_near(PosedPoints{mesh->vertices, a.pose}, {other.vertices, b.pose}, tolerance) &&
                (mesh == &other || mesh->triangles == other.triangles);
     }
@@ -67,8 +67,8 @@ bool are_duplicates(const PosedObject& a, const PosedObject& b, double tolerance
                     tolerance);
 }
 
-/// Returns directions along which a motion of b may separate two objects: the different normals of the first 16 contacts, and the
-/// axes in both senses.
+/// Returns directions in which a translation of b may separate two objects: the different normals of the first 16 contacts, and both
+/// directions of each world axis.
 std::vector<Point3d> directions_out(std::span<const Contact> contacts) {
     constexpr std::size_t most = 16;
     std::vector<Point3d> directions;
@@ -91,7 +91,8 @@ std::vector<Point3d> directions_out(std::span<const Contact> contacts) {
 /// Returns `reach`, enlarged so that a distance equal to `reach` up to rounding counts.
 double room_for_rounding(double reach) { return reach * (1 + 1e-12); }
 
-/// Sets depth_at_most: the least overlap along a few directions. If it equals a lower bound, the depth is the least.
+/// Sets depth_at_most. If the depth is a lower bound, depth_at_most is the least overlap along `directions`. If both are equal up to
+/// rounding, the depth is the least.
 template <typename Pair>
 void bound_depth(const Pair& pair, const std::vector<Point3d>& directions, Finding& finding) {
     finding.depth_at_most = finding.depth;
@@ -102,7 +103,7 @@ void bound_depth(const Pair& pair, const std::vector<Point3d>& directions, Findi
     if (least <= finding.depth + pair.rounding) finding.depth_kind = DepthKind::least;
 }
 
-/// Makes penetrating objects touching if a translation within the tolerance is proven to separate them.
+/// Changes the class from penetrating to touching if a translation of at most the tolerance is proven to separate the objects.
 template <typename Pair>
 void apply_tolerance(const Pair& pair, const std::vector<Point3d>& directions, const ContactRequest& request,
                      Finding& finding) {
@@ -117,8 +118,8 @@ void apply_tolerance(const Pair& pair, const std::vector<Point3d>& directions, c
     finding.depth_at_most = std::min(finding.depth_at_most, request.tolerance);
 }
 
-/// Finds the contacts of a pair, bounds the depth, and applies the tolerance. Some contacts are found even if none are wanted:
-/// their normals are directions to try.
+/// Finds the contacts of a pair, bounds the depth, and applies the tolerance. Finds a few contacts even if the caller wants no contacts,
+/// because bound_depth() and apply_tolerance() try their normals as directions.
 template <typename Pair>
 void find_contacts_of(const Pair& pair, const ContactRequest& request, Finding& finding) {
     constexpr std::uint32_t enough = 16;
@@ -131,14 +132,14 @@ void find_contacts_of(const Pair& pair, const ContactRequest& request, Finding& 
     finding.more_contacts = true;
 }
 
-/// Finds the depth of a pair of which one contains the other.
+/// Finds the depth of two objects of which one contains the other.
 template <typename Pair>
 void find_contained_depth(const Pair& pair, const std::stop_token& stop, Finding& finding) {
     pair.set_contained_depth(stop, finding);
     bound_depth(pair, directions_out({}), finding);
 }
 
-/// Converts a finding to the other order of the two objects.
+/// Converts a finding about (a, b) to a finding about (b, a).
 void swap_objects(Finding& finding) {
     std::swap(finding.nearest[0], finding.nearest[1]);
     for (Contact& contact : finding.contacts) {

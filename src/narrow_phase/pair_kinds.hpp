@@ -58,8 +58,8 @@ inline std::optional<ObjectDistance> distance_from(const std::optional<ConvexGap
     return ObjectDistance{gap->distance, gap->at_least, {gap->on_a, gap->on_b}};
 }
 
-/// Returns a bound on the rounding of a depth, as a fraction of the smaller object's size. A depth of convex solids that is no larger
-/// counts as touching.
+/// Returns a bound on the rounding error of a depth: 1e-12 of the radius of the smaller object's bounding sphere. Convex solids whose
+/// depth is at most this bound count as touching.
 inline double depth_rounding(const PosedObject& a, const PosedObject& b) {
     const auto size = [](const PosedObject& object) {
         const ShapeBounds& bounds = object.geometry.bounds;
@@ -68,7 +68,7 @@ inline double depth_rounding(const PosedObject& a, const PosedObject& b) {
     return std::min(size(a), size(b)) * 1e-12;
 }
 
-/// Returns the largest error of a depth that counts as the least: a millionth of the smaller object's size.
+/// Returns the largest error of a depth that still counts as the least depth: 1e-6 of the smaller radius. `rounding`: depth_rounding().
 inline double max_depth_error(double rounding) { return 1e6 * rounding; }
 
 inline Contact contact_from(const ConvexContact& contact) { return {contact.point, contact.normal, contact.depth}; }
@@ -117,8 +117,8 @@ inline double greatest_along(const Point3d& direction, const BoxedSolid& solid) 
     return vector::dot(direction, vector::posed(solid.box.pose, support(solid.solid, own))) + solid.solid.radius;
 }
 
-/// Return the length of a translation of b along `direction`, of length 1, after which a plane separates the objects: an upper
-/// bound of the least separating translation. Requires: the objects are not empty.
+/// Returns how far b must move along `direction` until a plane separates the objects. It is an upper bound of the least separating
+/// translation. Requires: `direction` has length 1; the objects are not empty.
 inline double overlap_along(const Point3d& direction, const PosedMesh& a, const PosedMesh& b) {
     return greatest_along(direction, a) + greatest_along(vector::times(direction, -1), b);
 }
@@ -255,7 +255,7 @@ struct MeshAndPlane {
     static double overlap_along(const Point3d&) { return 0; }
 };
 
-/// Returns judge(pair), where pair is one of the kinds above; `of_planes` for two planes.
+/// Makes the pair of the two objects, of one of the kinds above, and returns judge(pair). Returns `of_planes` for two planes.
 /// Requires: the kind of `first` is not after the kind of `second`.
 template <typename Result, typename Judge>
 Result with_kind(const PosedObject& first, const PosedObject& second, Result of_planes, const Judge& judge) {

@@ -13,7 +13,8 @@ PlaneSpan span_across(const PosedPlane& plane, const PosedConvex& convex) {
     const Point3d down = vector::times(plane.normal, -1);
     const Point3d highest = local.support(plane.normal), lowest = local.support(down);
     const double radius = local.radius();
-    // Covers the rounding of supports, of the plane's point and of its normal, at the object's distance from that point.
+    // Upper bound on the numbers that a height is computed from. So the error covers the rounding of supports, of the plane's point and
+    // of its normal.
     double largest = 3 * local.magnitude() + radius;
     for (const double at : plane.point) largest = std::max(largest, std::fabs(at));
     const double slack = 16 * std::numeric_limits<double>::epsilon() * largest;
@@ -37,7 +38,7 @@ ConvexGap plane_gap(const PosedPlane& plane, const PlaneSpan& span) {
 }
 
 ConvexContact plane_contact(const PosedPlane& plane, const PlaneSpan& span) {
-    // The shorter of two ways: up until the lowest point is at the plane, or down until the highest point is there.
+    // The shorter of two translations: up until the lowest point is on the plane, or down until the highest point is on the plane.
     const bool up = -span.low <= span.high;
     ConvexContact contact;
     contact.normal = up ? plane.normal : vector::times(plane.normal, -1);

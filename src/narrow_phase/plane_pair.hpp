@@ -42,7 +42,7 @@ PlaneSpan span_across(const PosedPlane& plane, const PosedConvex& convex);
 
 inline bool meets(const PlaneSpan& span) { return span.low <= 0 && span.high >= 0; }
 
-/// In the results of both functions, a is the plane and b the object.
+/// plane_gap() returns the gap, and plane_contact() the contact, of the plane (a) and the object (b) that covers `span`.
 ConvexGap plane_gap(const PosedPlane& plane, const PlaneSpan& span);
 ConvexContact plane_contact(const PosedPlane& plane, const PlaneSpan& span);
 

@@ -107,7 +107,8 @@ std::vector<Box3d> boxes_of_bounded(const ShapedObjects& objects, std::optional<
 
 /// Returns the axis that the plane is perpendicular to, if there is one.
 std::optional<std::size_t> upright_axis(const PosedPlane& plane) {
-    // With a tilt of 1e-9, a distance along the axis exceeds that along the normal by 1e-18 of it: less than a rounding.
+    // If the normal is tilted by 1e-9, a distance along the axis exceeds the distance along the normal by a relative 1e-18. This is
+    // less than a rounding error.
     constexpr double tolerance = 1e-9;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (std::fabs(plane.normal[(axis + 1) % 3]) > tolerance) continue;
@@ -145,7 +146,7 @@ void add_planes(const ShapedObjects& objects, const std::optional<Box3d>& bounds
             flatten(boxes[i], plane, *axis);
             continue;
         }
-        // Two rotations with the same normal differ by a rotation about the normal, so the normal is constant.
+        // If the normals at the begin and at the end are equal, the object rotates about the normal only. So the normal is constant.
         const PosedPlane end = posed_plane(*shape, objects.end_poses[i]);
         if (upright_axis(end) != axis || (end.normal[*axis] > 0) != (plane.normal[*axis] > 0)) continue;
         flatten(boxes[i], plane, *axis);

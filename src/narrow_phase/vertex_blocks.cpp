@@ -25,7 +25,7 @@ CornerBounds corner_bounds_of(std::span<const Point3d> points) {
     return bounds;
 }
 
-/// Sorts neighbours into the same block: recursively halves the points along the longest side of their bounds.
+/// Reorders points so that each block holds neighbours: recursively halves the points along the longest side of their bounds.
 void arrange(std::span<Point3d> points, std::size_t block_size) {
     if (points.size() <= block_size) return;
     const CornerBounds bounds = corner_bounds_of(points);
@@ -50,7 +50,7 @@ struct VertexBlocks::Row {
     Row(const std::array<double, 4>& row, const Point3d& largest) : factors(row) {
         double magnitude = std::fabs(row[3]);
         for (std::size_t k = 0; k < 3; ++k) magnitude += std::fabs(row[k]) * largest[k];
-        // The centre and the half side each sum at most four products of numbers below these: at most 16 roundings.
+        // The centre and the half side are sums of at most four products, whose factors are bounded by `magnitude`: at most 16 roundings.
         slack = 16 * std::numeric_limits<double>::epsilon() * magnitude + std::numeric_limits<double>::min();
     }
     double centre(const Block& block) const {

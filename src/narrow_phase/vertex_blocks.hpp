@@ -1,4 +1,4 @@
-// VertexBlocks: vertices in blocks of neighbours, to find the extreme ones without reading all vertices.
+// VertexBlocks: vertices in blocks of neighbours. Finds the extreme vertices along an axis without reading all vertices.
 //
 // Cost      Without blocks, the world boxes of all instances of a mesh would cost instances x vertices.
 // Skipping  The vertices of a block are read only if its box, widened by the rounding error, exceeds the bounds found so far.
@@ -35,7 +35,7 @@ private:
     struct Row;
     void extend_by_block(std::size_t block, const Row& row, double& low, double& high) const;
 
-    std::vector<Block> blocks_;  // separate from places_: all blocks are read, but the vertices of few
+    std::vector<Block> blocks_;  // separate from places_: a search reads all blocks, but the vertices of few blocks
     std::vector<Places> places_;
     Point3d largest_ = {};  ///< largest absolute coordinate on each axis
 };

@@ -34,14 +34,14 @@ public:
         for (const std::uint32_t vertex : loose) join_with_earlier(vertex);
     }
 
-    /// Returns the first vertex of the chain that a vertex is in.
+    /// Returns the vertex that stands for all vertices joined with `vertex`: the end of the chain in firsts_.
     std::uint32_t first(std::uint32_t vertex) {
         while (firsts_[vertex] != vertex) vertex = firsts_[vertex] = firsts_[firsts_[vertex]];
         return vertex;
     }
 
 private:
-    /// Coordinates beyond the range of integers share cells, which costs only time.
+    /// Returns the grid cell of a place. Coordinates beyond the range of integers get the same cell, which only takes more time.
     Cell cell_of(const Point3d& place) const {
         constexpr double most = 0x1p62;
         Cell cell;
@@ -72,7 +72,7 @@ private:
     std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells_;
 };
 
-/// Makes vertices of equal places one.
+/// Joins vertices that have equal coordinates.
 void join_equal(shape::Mesh& mesh) {
     std::vector<std::uint32_t> order(mesh.vertices.size()), firsts(mesh.vertices.size());
     std::iota(order.begin(), order.end(), 0U);

@@ -34,7 +34,7 @@ void BlockRing::add() {
         if (idle_ > 0) {
             added_.notify_one();
         } else {
-            others_wait = filled_ > claimed_ + 1;  // this thread processes the first one itself
+            others_wait = filled_ > claimed_ + 1;  // this thread processes the first of the waiting blocks
         }
     }
     if (others_wait && may_start_ && helpers_.size() + 1 < threads_) start_helper();
@@ -44,7 +44,7 @@ void BlockRing::start_helper() {
     try {
         helpers_.emplace_back([this] { help(); });
     } catch (const std::system_error&) {
-        may_start_ = false;  // no more threads available: continue with the present ones
+        may_start_ = false;  // no more threads are available: continue with the present threads
     }
 }
 
@@ -65,11 +65,11 @@ void BlockRing::hand_out_head() {
     Slot& head = slot(head_);
     if (head.failure) std::rethrow_exception(std::exchange(head.failure, nullptr));
     deliver_(head.block);
-    head.done = false;  // without the lock: no other thread reads it before the block is filled again
+    head.done = false;  // needs no lock: no other thread reads `done` before the block is filled again
     ++head_;
 }
 
-/// Makes progress by one step: delivers the head, processes a block, or waits until the head is done.
+/// Delivers the head if it is done. Otherwise processes a block or, if all blocks are claimed, waits for the head and delivers it.
 void BlockRing::advance() {
     Slot* mine = nullptr;
     {

@@ -28,7 +28,7 @@ namespace octopair {
 struct FilterWork {
     std::uint64_t in = 0, out = 0;  ///< numbers of pairs before and after the filter
     double seconds = 0;
-    std::uint64_t undecided = 0;  ///< dropped pairs that may count
+    std::uint64_t undecided = 0;  ///< pairs that the filter dropped although they may collide
 };
 
 struct Block {
@@ -55,7 +55,7 @@ public:
     Block& empty_block();
     /// Adds the block that empty_block() returned. Requires: it is filled.
     void add();
-    /// Delivers blocks from the head on that are done. Does not wait.
+    /// Delivers blocks that are done, beginning at the head, until one is not done. Does not wait.
     void hand_out();
     /// Processes and delivers blocks until the ring is empty.
     void finish();

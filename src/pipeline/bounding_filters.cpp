@@ -23,7 +23,7 @@ namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// Returns an upper bound on the factor by which a pose stretches lengths: the root of a norm of its transpose times itself.
+/// Returns an upper bound on the factor by which a pose stretches lengths: the square root of the largest row sum of (transpose * pose).
 double stretch_of(const Pose& pose) {
     double most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -50,10 +50,10 @@ Ball ball_of(const detail::PreparedShape& shape, const Pose& pose) {
     return ball;
 }
 
-/// Returns the half edges of a posed box.
+/// Returns vectors from the centre of a posed bounding box to the centres of three of its faces.
 std::array<Point3d, 3> half_edges(const detail::PreparedShape& shape, const Pose& pose) {
     const Box3d& box = shape.bounds.box;
-    // Poses do not scale radii. A pose may deviate from a rotation by 1e-6, which must not shrink the radius.
+    // A pose may deviate from a rotation by 1e-6, and so shrink the box. But poses do not scale the radius of a solid.
     constexpr double max_rotation_error = 4e-6;
     std::array<Point3d, 3> edges;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -79,8 +79,8 @@ struct ShapePair {
 
 const shape::Plane* plane_of(const detail::PreparedShape& shape) { return std::get_if<shape::Plane>(&shape.shape); }
 
-/// Returns whether the distance of a plane from a solid is greater than `reach`. `thick`: half thickness of the solid around
-/// the ball's centre, along the plane's normal.
+/// Returns whether the distance of a plane from a solid is greater than `reach`. `thick`: how far the solid extends from the ball's centre
+/// along the plane's normal.
 bool plane_apart(const PosedPlane& plane, const Ball& ball, double thick, double reach) {
     const double height = vector::dot(vector::minus(ball.centre, plane.point), plane.normal);
     const double slack = 2 * ball.slack + 32 * rounding * (vector::length(plane.point) + std::fabs(height));

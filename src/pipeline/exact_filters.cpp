@@ -65,7 +65,7 @@ private:
 
     ShapedObjects first_, second_;
     bool moving_;
-    std::vector<bool> first_open_, second_open_;  // by geometry
+    std::vector<bool> first_open_, second_open_;  // by geometry; true: an open mesh
 };
 
 /// The poses of two moving objects at one time.
@@ -89,8 +89,8 @@ struct MovingPair {
     MovingObject a, b;
 };
 
-/// Returns whether moving objects meet, or come within `reach`. `finding` describes the first such moment. At the time of
-/// impact there is still a gap of the search's tolerance, unless the objects meet at the beginning.
+/// Returns whether two moving objects meet, or come within `reach`. Sets `finding` to describe the first such moment. At this moment
+/// a gap as large as the tolerance of first_time_within() may be left, unless the objects meet at the beginning.
 bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const std::stop_token& stop) {
     const auto& [a, b] = pair;
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -103,7 +103,7 @@ bool judge_moving(const MovingPair& pair, double reach, Finding& finding, const 
         finding.collision_class = CollisionClass::collision;
         finding.distance = 0;
     }
-    // The distance may exceed `reach` by the search's tolerance.
+    // The distance may exceed `reach` by the tolerance of first_time_within().
     if (finding.collision_class == CollisionClass::clearance) finding.distance = std::min(finding.distance, reach);
     finding.time = *time;
     return true;
@@ -130,7 +130,7 @@ void find_impact(const Moment& moment, const ContactRequest& request, Finding& f
     finding.contacts = {contact};
 }
 
-/// Returns whether a point is in the interior of the bounding box of an object, in the coordinates of its shape.
+/// Returns whether a point of the world is in the interior of an object's bounding box, which is turned with the object.
 bool is_in_bounds(const Point3d& point, const PosedObject& object) {
     const ShapeBounds& bounds = object.geometry.bounds;
     if (!bounds.bounded) return false;
@@ -140,7 +140,7 @@ bool is_in_bounds(const Point3d& point, const PosedObject& object) {
         const auto axis = [&](std::size_t i) { return vector::column(object.pose, i % 3); };
         const Point3d normal = vector::cross(axis(k + 1), axis(k + 2));
         const double half = bounds.box.max[k] - bounds.centre[k];
-        constexpr double inner = 1 - 1e-9;  // so that rounding does not move corners on the box into it
+        constexpr double inner = 1 - 1e-9;  // keeps corners that lie on the box outside, despite rounding
         if (!(std::fabs(vector::dot(offset, normal)) < inner * half * std::fabs(vector::dot(axis(k), normal))))
             return false;
     }
@@ -154,12 +154,12 @@ Point3d point_of(const PosedObject& object) {
     return vector::posed(object.pose, is_mesh ? tree.vertices[tree.triangles[0][0]] : object.geometry.bounds.centre);
 }
 
-/// Returns whether one of two objects may be inside the other, which is not closed.
+/// Returns whether `inner` may be inside `open`, a mesh that is not closed. Tests one point of `inner` against the box of `open`.
 bool may_be_inside(const PosedObject& inner, const PosedObject& open) {
     return inner.geometry.bounds.bounded && is_in_bounds(point_of(inner), open);
 }
 
-/// Returns whether pair `i` counts. If so, replaces its finding, except the note.
+/// Returns whether the objects of pair `i` meet or come within the margin. If so, replaces the pair's finding, but keeps its note.
 bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i) {
     const Pair pair = batch.pairs()[i];
     const double reach = margin + objects.padding(pair);
@@ -206,7 +206,7 @@ public:
                                      options_.duplicate_tolerance.value_or(options_.tolerance)};
         batch.keep_if([&](std::size_t i) {
             const Pair pair = batch.pairs()[i];
-            // Without an "exact object" filter before, this filter also decides whether the pair counts.
+            // If no "exact object" filter ran before, this filter also decides whether the objects meet.
             const bool judged = batch.finding(i).collision_class != CollisionClass::unknown;
             if (!judged && !judge(objects_, options_.margin, batch, i)) return false;
             Finding& finding = batch.finding(i);

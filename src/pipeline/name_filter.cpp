@@ -29,7 +29,7 @@ std::size_t behind_character(std::string_view text, std::size_t at) {
 bool matches_pattern(std::string_view name, std::string_view pattern) {
     constexpr auto none = std::string_view::npos;
     std::size_t n = 0, p = 0;
-    std::size_t star = none, taken = 0;  // the last `*`, and the end of the text that it matches
+    std::size_t star = none, taken = 0;  // position of the last `*`; end of the text that it matches so far
     while (n < name.size()) {
         if (p < pattern.size() && pattern[p] == '*') {
             star = p++;
@@ -55,7 +55,7 @@ namespace {
 
 using RuleList = std::vector<std::uint32_t>;
 
-/// The rules whose first patterns (`as_a`) and whose second patterns (`as_b`) an object matches.
+/// A kind of objects: the rules whose first patterns (`as_a`), and the rules whose second patterns (`as_b`), its objects match.
 struct Kind {
     RuleList as_a, as_b;
     auto operator<=>(const Kind&) const = default;
@@ -105,9 +105,9 @@ private:
         return place->second;
     }
 
-    std::map<ColumnPatterns, Kind> patterns_;  // by patterns: the rules that have them
+    std::map<ColumnPatterns, Kind> patterns_;  // for each list of patterns, the rules that use it
     std::map<Kind, std::uint32_t> numbers_;
-    std::vector<const Kind*> kinds_;  // by number: keys of numbers_
+    std::vector<const Kind*> kinds_;  // kind of each number; points to the keys of numbers_
 };
 
 bool have_common(const RuleList& first, const RuleList& second) {
@@ -144,7 +144,7 @@ private:
     std::optional<PerObject<std::uint32_t>> of_objects_;
 };
 
-/// Returns names as the only column.
+/// Returns text columns whose only column is `names`.
 TextColumns column_of(std::span<const std::string> names) {
     return {names.size(), [names](std::uint32_t object, std::size_t) { return std::string_view(names[object]); }};
 }

@@ -1,6 +1,7 @@
-// PerObject: one value for each object of the two sets of a join, or of the one set of a call. in_second_set(): places errors.
+// PerObject: one value for each object of a call, which has one set, or two sets in a join.
+// in_second_set(): marks errors as errors about an object of the second set.
 //
-// A pair with an object that has no value is an error: the filter got values for other objects than the engine.
+// A pair with an object that has no value is an error: the caller gave the filter values for other objects than those of the engine.
 #pragma once
 
 #include <cstdint>

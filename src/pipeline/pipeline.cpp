@@ -22,7 +22,7 @@ namespace {
 
 using Filters = std::vector<std::unique_ptr<Filter>>;
 
-/// Thrown through an engine's search when Options::limit collisions have been delivered and one more was found.
+/// Exception that ends an engine's search: Options::limit collisions have been delivered, and one more was found.
 struct LimitReached {};
 
 /// Chooses the number of pairs of the next block from measured times.
@@ -44,13 +44,15 @@ public:
 
 private:
     static constexpr std::size_t first = 64;
-    static constexpr double aim = 2e-4;  // seconds for a block; far more than it takes to pass a block between threads
+    static constexpr double aim =
+        2e-4;  // intended seconds for a block; far more than passing it to another thread takes
 
     std::size_t least_, most_, pairs_;
     double seconds_ = -1;  // moving average of the time for a pair; negative: not measured yet
 };
 
-/// One call: from the engine's sink through the filters to the caller's sink. Only apply() runs on other threads as well.
+/// One call. Takes pairs as the engine's sink, applies the filters, and passes the results to the caller's sink. apply() runs on several
+/// threads, all other functions on the calling thread.
 class Flow {
 public:
     struct Setup {
@@ -179,7 +181,7 @@ private:
     }
 
     const Engine* engine_;
-    const CallScope* outer_ = CallScope::innermost();  // calls whose callback runs this pipeline
+    const CallScope* outer_ = CallScope::innermost();  // innermost call whose callback runs this pipeline, if any
     const Filters& filters_;
     const CollisionSink& sink_;
     PipelineSummary& summary_;
@@ -221,7 +223,7 @@ struct Pipeline::State {
     unsigned threads;
     Filters filters = {};
 
-    /// Returns what a call needs. `engine`: that of the search, or null.
+    /// Returns the setup of a call. `engine`: engine of the search; null for a list of pairs.
     // NOLINTNEXTLINE(readability-function-size): an engine, and the parameters of Pipeline::run.
     Flow::Setup setup(const Engine* engine, const CollisionSink& sink, const Options& options,
                       std::stop_token stop) const {

@@ -61,7 +61,7 @@ void check(const TriangleSet& set, unsigned threads) {
     }
 }
 
-/// Returns whether the distance of the triangles' boxes exceeds `margin`, by more than rounding errors.
+/// Returns whether the distance of the triangles' bounding boxes exceeds `margin` by more than rounding errors.
 bool boxes_apart(const Triangle3d& a, const Triangle3d& b, double margin) {
     Point3d gap = {};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -109,14 +109,15 @@ private:
         for (const Pair& pair : pairs) triangles_.check(pair);
     }
 
-    /// Returns whether the flags of the prefilter suffice to remove a pair.
+    /// Returns whether a pair with these flags of the prefilter can be removed without an exact test.
     bool leaves_out(std::uint8_t flags) const {
         if (flags == prefilter_apart) return options_.margin == 0;
         const bool adjacent = !join_ && owners_.empty() && options_.adjacent != AdjacentTriangles::include;
         return flags == (prefilter_apart | prefilter_shared) && adjacent;
     }
 
-    /// Removes pairs that the prefilter decides, which are most, without a branch for each. Moves the flags of the others.
+    /// Removes the pairs that the prefilter decides. The loop has no branch on the decision. Moves the flags of the remaining pairs to
+    /// the front of `prefiltered`.
     void keep_undecided(Batch& batch, std::vector<std::uint8_t>& prefiltered) const {
         const std::array<bool, 4> left_out = {leaves_out(0), leaves_out(1), leaves_out(2), leaves_out(3)};
         std::vector<std::uint32_t> undecided(prefiltered.size());

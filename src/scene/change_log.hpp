@@ -25,7 +25,7 @@ struct PreviousState {
 
 class ChangeLog {
 public:
-    /// Reserves memory for `changes` calls of note(), so that they cannot fail. The log overflows if they do not fit.
+    /// Reserves memory for `changes` calls of note(), so that these calls cannot fail. If so many changes do not fit, the log overflows.
     void reserve(ObjectTable& table, std::uint64_t changes) noexcept {
         if (overflowed_) return;
         if (double(previous_states_.size() + changes) >= most(table)) return overflow(table);
@@ -53,7 +53,7 @@ public:
     /// Returns whether more objects changed than the log holds.
     bool overflowed() const { return overflowed_; }
 
-    /// Empties the log. It stays empty until clear().
+    /// Empties the log and marks it as overflowed, so that note() has no effect until clear().
     void give_up(ObjectTable& table) { overflow(table); }
     /// Empties the log after a step, so that it records changes again.
     void clear(ObjectTable& table) {

@@ -74,7 +74,7 @@ void ChangeSearch::read_changes(const View& scene, const MutableOctree& octree) 
         const PreviousState& former = formers[i];
         const ObjectState now = scene.table.state(former.index);
         changes_.push_back({former.index, former.state.exists, now.exists, {}, {}});
-        // An object that did not exist, or no longer exists, has a valid box here that is not used.
+        // The box is valid but not used if the object did not exist at the last step, or no longer exists.
         entries_.push_back(scene.rounding.entry(former.state.box, now.padding));
         entries_.push_back(scene.rounding.entry(now.box, now.padding));
     }
@@ -143,7 +143,7 @@ void ChangeSearch::apply_listed_changes(const View& scene, MutableOctree& octree
         keys[i] = std::uint64_t(visits[i].unit) << 32 | i;
     }
     octree.reserve(puts);
-    // A single thread needs no sort by unit: it makes the visits in the order of the changes.
+    // A single thread makes the visits in the order of the changes. Several threads need them sorted by unit, to divide the units.
     const auto order = team_.threads() == 1 ? keys : sort_.sort(32, 32 + unsigned(std::bit_width(octree.units())));
     const std::size_t share_size = tuning().scene.share_visits, run_size = tuning().scene.run_visits;
     const auto make_share = [&](std::size_t i, unsigned worker) {

@@ -2,8 +2,8 @@
 //
 // Invariants
 //   The result is that of applying the changes to the octree one after the other, in the order of the log.
-//   Each change searches the octree around the old and the new place of its object. Objects of earlier changes are then at
-//   their new places, objects of later changes at their old places.
+//   Each change searches the octree around the old and the new box of its object. At that time, the octree has the new boxes of
+//   objects of earlier changes, and the old boxes of objects of later changes.
 //   A pair of two changed objects that ended is found by the earlier change of the two.
 //   A pair of two changed objects that began is found by the later change of the two.
 //   The octree yields candidates. The old and new boxes and traits of the two objects decide.
@@ -23,7 +23,7 @@
 
 namespace octopair {
 
-/// How boxes of a scene become entries of its octree.
+/// Rule by which the boxes of a scene are rounded to the float32 entries of its octree.
 struct EntryRounding {
     bool exact = true;         ///< true: entries have the bounds of the boxes, without rounding
     OutwardRounding rounding;  ///< used if not `exact`
@@ -83,7 +83,7 @@ private:
     Team& team_;
     std::vector<Worker> workers_;
     std::vector<OctreeChange> changes_;   // in the order of the log
-    std::vector<std::uint8_t> is_large_;  // by change, 1: visits too many units to be listed; applied first
+    std::vector<std::uint8_t> is_large_;  // by change; 1: visits too many units, so it is applied first
     std::vector<MutableOctree::Visits> listed_;
     std::vector<Entry> entries_;
     std::vector<CellBox> cells_;

@@ -12,7 +12,7 @@ namespace octopair {
 
 namespace {
 
-/// Copies the candidates that `is_pair` accepts to `out`. Returns their number.
+/// Copies the candidates for which `is_pair` returns true to `out`. Returns the number of copied pairs.
 template <typename IsPair>
 std::size_t copy_pairs(std::span<const Pair> candidates, Pair* out, const IsPair& is_pair) {
     std::size_t count = 0;
@@ -23,7 +23,8 @@ std::size_t copy_pairs(std::span<const Pair> candidates, Pair* out, const IsPair
     return count;
 }
 
-/// Returns a function that copies the pairs among candidates. Without margin and paddings it reads the boxes alone.
+/// Returns a function that copies those candidates whose own boxes are a pair. If there are no margin and no paddings, the function reads
+/// the boxes only.
 std::function<std::size_t(std::span<const Pair>, Pair*)> make_filter(const ObjectTable& table, double margin) {
     if (margin > 0 || table.any_padding()) {
         return [&table, margin](std::span<const Pair> candidates, Pair* out) {
@@ -44,7 +45,7 @@ std::function<std::size_t(std::span<const Pair>, Pair*)> make_filter(const Objec
 
 }  // namespace
 
-/// Divides the candidates into parts, each with room for its pairs.
+/// Divides the candidates into parts. Gives each part a piece of `room` that is as large as the part, for the pairs in it.
 void ExactPairs::divide(const PairList& candidates, std::span<Pair> room) {
     parts_.clear();
     std::size_t begin = 0;

@@ -1,4 +1,5 @@
-// ExactPairs: the pairs of the objects' own boxes, for a scene with slack. They are a part of the pairs of its searched boxes.
+// ExactPairs: the pairs of the objects' own boxes, for a scene with slack. A searched box contains the own box, so these pairs are among
+// the pairs of the searched boxes.
 #pragma once
 
 #include <vector>

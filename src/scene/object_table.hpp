@@ -80,7 +80,7 @@ public:
     std::span<const Traits> all_traits() const { return with_traits_ ? traits_.span() : std::span<const Traits>(); }
     /// Returns the indices that are free. create() uses the last element first.
     std::span<const std::uint32_t> free() const { return free_; }
-    /// Prefetches what other calls read of this object.
+    /// Prefetches the data that other functions read of this object.
     void prefetch(std::uint32_t index) const {
         prefetch_slot(index);
         searched_.prefetch(index);
@@ -91,7 +91,7 @@ public:
         if (index < slots_.size()) hwy::Prefetch(&slots_[index]);
     }
 
-    /// Adds an object at a free index, or at a new index if none is free. Returns its id.
+    /// Adds an object at a free index, or at a new index if no index is free. Returns the object's id.
     /// Requires: reserve() has been called for it.
     template <typename Real>
     ObjectId create(const Box<Real>& box, double padding, const Traits& traits);

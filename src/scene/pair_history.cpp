@@ -23,7 +23,7 @@ public:
     void next() {
         if (++at_ == end_) next_chunk();
     }
-    /// Returns the next pairs of this chunk that are less than `key`, and advances behind them.
+    /// Returns the next pairs of this chunk whose keys are less than `key`, and advances beyond these pairs.
     std::span<const Pair> run_before(std::uint64_t key) {
         // Galloping search, because runs are short where much has changed.
         const Pair* const begin = at_;
@@ -121,7 +121,7 @@ void check_ascending(const char* list, std::span<const Pair> pairs) {
     if (wrong != pairs.end()) throw out_of_order(list, key_of(wrong[0]), key_of(wrong[1]));
 }
 
-/// Advances to the next pair of a full detection. Throws: Error{engine_failed} if it is not greater than the pair before it.
+/// Advances to the next pair of a full detection. Throws: Error{engine_failed} if the pairs are not ascending.
 void next_found(Reader& reader) {
     const std::uint64_t key = key_of(reader.pair());
     reader.next();
@@ -199,7 +199,7 @@ void PairHistory::prepare(bool little) {
     if (little && !other_reserved_) reserve_other();
 }
 
-/// Fills other_ with a copy of the list, so that a later merge() finds its memory allocated. No frame has to wait for it.
+/// Fills other_ with a copy of the list, so that a later merge() finds its memory allocated and no later step waits for page faults.
 void PairHistory::reserve_other() {
     Writer writer(other_);
     for (Reader reader(list_); !reader.done();) writer.add(reader.run_before(~std::uint64_t(0)));

@@ -53,7 +53,7 @@ public:
     /// Throws: Error{engine_failed} if fresh() is not ascending; then only `changes` has been modified.
     void take_over(PairChanges& changes);
     /// Allocates memory before a step, so that a lack of memory fails the step before anything has changed.
-    /// `little`: the step may be incremental, so memory for a later merge is allocated as well.
+    /// `little`: the step may be incremental. Then also allocates memory for a later merge().
     /// Throws: Error{engine_failed} if the merge finds that the list is inconsistent. The next call does not throw this again.
     void prepare(bool little);
     /// Adds the changes of an incremental step. Requires: the list is consistent.

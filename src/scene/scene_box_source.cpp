@@ -70,7 +70,7 @@ void SceneBoxSource::pick(std::span<const std::size_t> positions, std::span<Entr
 
 RoundingSlack SceneBoxSource::slack() const {
     if (!table_.any_traits()) return all_.slack();
-    // No hit is certain before is_pair() has checked the traits.
+    // An infinite slack makes every hit doubtful, so that is_pair() checks the traits of each hit.
     constexpr float all = std::numeric_limits<float>::infinity();
     return {{all, all, all}};
 }

@@ -114,7 +114,7 @@ void SceneObjects::add(const Objects& objects, std::span<ObjectId> ids, std::spa
 /// Reserves log memory for changes, so that they cannot fail.
 void SceneObjects::prepare(std::uint64_t changes) { log_.reserve(table_, changes); }
 
-/// Logs that an object moves. With slack, update_searched() logs it later, if it left its searched box.
+/// Logs the object's state before a move. With slack, logs nothing: update_searched() later logs the objects that left their searched box.
 void SceneObjects::note_move(std::uint32_t index) {
     if (!table_.has_slack()) log_.note(table_, index, true);
 }
@@ -234,7 +234,7 @@ void SceneObjects::set_traits(std::span<const ObjectId> ids, std::span<const Tra
 }
 
 void SceneObjects::enlarge_all() {
-    if (!table_.has_slack() || log_.overflowed()) return;  // update_searched() has enlarged all
+    if (!table_.has_slack() || log_.overflowed()) return;  // update_searched() has enlarged all boxes
     log_.give_up(table_);
     table_.enlarge_all();
 }
@@ -248,7 +248,7 @@ bool SceneObjects::finish_step() {
     return finish_sweeps();
 }
 
-/// Sets each swept object to the box at the end of its sweep. The log counts this as a change of the next step.
+/// Sets the box of each swept object to the box at the end of its sweep. For the log, this is a change after the step.
 bool SceneObjects::finish_sweeps() {
     if (swept_.empty()) return false;
     if (!table_.has_slack()) prepare(swept_.size());

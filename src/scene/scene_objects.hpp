@@ -21,7 +21,7 @@ class OCTOPAIR_PRIVATE_EXPORT SceneObjects {
 public:
     /// Whether the previous states of changed objects are logged until the next step.
     enum class Changes : std::uint8_t { kept, forgotten };
-    /// An object that is swept. Until the next step ends, its box in the table bounds its whole way.
+    /// An object that is swept. Until the next step ends, its box in the table contains its boxes at the begin and at the end of the sweep.
     struct Swept {
         ObjectId id;  ///< default-constructed if the object was moved or removed since
         Box3d place;  ///< box of the object after the next step
@@ -54,7 +54,7 @@ public:
     /// An object that was swept in the last step.
     struct Settled {
         std::uint32_t index;
-        Box3d swept_box;  ///< its own box in that step
+        Box3d swept_box;  ///< own box of the object during the last step
     };
     std::span<const Settled> settled() const { return settled_; }
     /// Returns whether a change since the last step must be searched for. Without slack that is every change.
@@ -83,7 +83,7 @@ private:
     template <typename Real>
     void sweep_to(std::span<const ObjectId> ids, std::span<const Box<Real>> boxes);
     void drop_swept(std::uint32_t index);
-    /// Returns false if no object was swept.
+    /// Sets swept objects to their new boxes. Returns false if no object was swept.
     bool finish_sweeps();
 
     bool float64_;
@@ -96,7 +96,7 @@ private:
     std::vector<Swept> swept_;
     /// By object index: position in swept_, or `none`. Empty before the first sweep.
     std::vector<std::uint32_t> swept_at_;
-    std::vector<Settled> settled_;     // in the last step; has room for all of swept_
+    std::vector<Settled> settled_;     // objects that were swept in the last step; has room for all of swept_
     bool is_changed_by_call_ = false;  // since the last step
     CallEncoder* recorder_ = nullptr;
 };

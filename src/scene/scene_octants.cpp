@@ -1,5 +1,5 @@
-// Octants of a scene. The boxes of the objects are copied to consecutive positions if indices are not in use. So the octants do
-// not depend on boxes that have no meaning.
+// Octants of a scene. Indices that are not in use have boxes without meaning. If there are such indices, the boxes of the objects are
+// first copied to consecutive positions. So the octants depend on the boxes of objects only.
 #include <new>
 #include <variant>
 #include <vector>

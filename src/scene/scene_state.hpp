@@ -51,7 +51,8 @@ public:
     const PairList& searched_pairs() { return history_.list(); }
     const PairList& persisting();
     SceneQueries& queries() { return queries_; }
-    /// Returns what a query of the current objects reads. Builds an octree if there is none to use.
+    /// Returns the view of the current objects that queries read. Builds an octree unless there is one of the current objects, or one
+    /// of the last step together with a log of the changes since.
     SceneQueries::View view(std::uint32_t groups);
     /// Compares the pairs of the last step with a second algorithm (scene_verify.cpp).
     Verification verify(const std::stop_token& stop);
@@ -61,7 +62,7 @@ public:
 private:
     // Defined in scene_step.cpp.
     std::function<void(std::uint64_t)> room_of(const SceneOptions& options);
-    /// Returns the history of the pairs that the scene shows.
+    /// Returns the history of the pairs that the caller sees: with slack, the pairs of the own boxes.
     PairHistory& shown() { return exact_ ? exact_->history() : history_; }
     bool search(const std::stop_token& stop);
     void update_searched();

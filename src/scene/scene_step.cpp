@@ -36,13 +36,13 @@ constexpr unsigned min_steps_with_few = 4;
 /// First estimate of the cost of a changed object, in multiples of the cost of an object in a full step.
 constexpr double initial_change_cost = 10;
 
-/// Returns the choice that measured seconds suggest, unless tuning forces another one.
+/// Returns `measured`, the choice by measured times, unless tuning forces incremental or full steps.
 bool chooses_incremental(bool measured) {
     const StepChoice choice = tuning().scene.step;
     return choice == StepChoice::measured ? measured : choice == StepChoice::incremental;
 }
 
-/// Returns how long an incremental step may take. A step that tuning forces has all the time that tests may need.
+/// Returns how long an incremental step may take. Returns a very long time if tuning forces incremental steps, so that no test is aborted.
 std::chrono::steady_clock::duration time_limit(double full_seconds) {
     if (tuning().scene.step != StepChoice::measured) return std::chrono::hours(1);
     const auto seconds = std::chrono::duration<double>(abort_cost * full_seconds + abort_seconds);
@@ -127,7 +127,8 @@ bool Scene::State::search(const std::stop_token& stop) {
     return full;
 }
 
-/// Runs a step in which no searched box has changed. Returns false if one has, or if no step has succeeded yet.
+/// Runs a step in which no searched box has changed. Returns false, and does nothing, if a searched box has changed, or if the pairs
+/// do not describe the last step.
 bool Scene::State::find_nothing(const std::stop_token& stop) {
     const bool idle =
         states_.is_last_step(SearchedStates::pairs) && !objects_.must_search() && !history_.is_inconsistent();
@@ -140,7 +141,7 @@ bool Scene::State::find_nothing(const std::stop_token& stop) {
 
 /// Returns whether an incremental step is possible, and expected to be cheaper than a full one.
 bool Scene::State::expects_few_changes() const {
-    // The pairs describe a later state than that of the last step if a step found them and then failed.
+    // A step that found the pairs and then failed leaves pairs of a later state than that of the last step. Only a full step may follow it.
     const bool has_octree = states_.is_last_step(SearchedStates::octree);
     if (!states_.is_last_step(SearchedStates::pairs) || !(has_octree || states_.is_last_step(SearchedStates::linear)))
         return false;
@@ -149,7 +150,7 @@ bool Scene::State::expects_few_changes() const {
     if (exact_) most = std::min(most, max_cost_with_slack);
     const bool often = !exact_ || has_octree || steps_with_few_ >= min_steps_with_few;
     const bool cheap = chooses_incremental(expected <= most * full_seconds_ && often);
-    // Exact entries are boxes without paddings. They do not serve objects that have paddings by now.
+    // Entries without rounding require objects without paddings. If objects have paddings now, the octree needs other entries.
     const bool unlike = rounding_.exact && objects_.table().any_padding();
     return cheap && !unlike && !objects_.log().overflowed() && !history_.is_inconsistent();
 }
@@ -171,7 +172,7 @@ void Scene::State::find_all(const std::stop_token& stop) {
         initial_change_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));
     // The measured estimate decays, so that an incremental step is tried again later.
     seconds_a_change_ = seconds_a_change_ > guess ? 0.95 * seconds_a_change_ : guess;
-    history_.take_over(found_);  // last, so that a failure before has changed nothing
+    history_.take_over(found_);  // last, so that an earlier failure has not changed the pairs
     states_.hold_now(SearchedStates::pairs);
 }
 
@@ -183,7 +184,7 @@ void Scene::State::build(const SceneBoxSource& source, const std::stop_token& st
     const unsigned refills = refill ? refills_ + 1 : 0;
     refills_ = tuning().scene.max_refills;
     states_.forget(SearchedStates::linear);
-    states_.forget(SearchedStates::octree);  // its entries have the rounding of the build before
+    states_.forget(SearchedStates::octree);  // its entries have the rounding of the previous build
     refill ? linear_.refill(source, executor, stop) : linear_.build(source, executor, stop);
     refills_ = refills;
     rounding_ = rounding;
@@ -198,7 +199,7 @@ SceneQueries::View Scene::State::view(std::uint32_t groups) {
         count_path(Path::octree_for_queries);
         states_.forget(SearchedStates::octree);
         if (!states_.is_now(SearchedStates::linear)) build(SceneBoxSource(objects_.table(), margin_), {});
-        // The origin of rounding depends on all objects, also on those that were removed since the build. So that of the build is used.
+        // Uses the rounding of the build: the origin of rounding depends on all objects, also on objects that were removed since the build.
         const SceneBoxSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
         TeamExecutor executor(team_);
         octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});

@@ -1,4 +1,5 @@
-// Check of ascending results: each row is compared with the row of the second algorithm as soon as the row is complete.
+// Check of ascending results. A row is all pairs (a, b) of one object a. Each complete row of the result is compared with the row that the
+// second algorithm (row_search.hpp) finds.
 #include <algorithm>
 #include <atomic>
 #include <optional>
@@ -59,7 +60,8 @@ private:
         last_ = pair;
     }
 
-    /// Compares the rows before `end`. Requires: all pairs of these rows were taken.
+    /// Compares the rows before `end` that were not compared yet, and drops their pairs. Requires: take() has received all pairs of
+    /// these rows.
     void compare_rows(std::uint32_t end) {
         const auto compare = [&](std::uint32_t a, std::span<const std::uint32_t> expected) {
             const auto [begin, after] = std::equal_range(held_.begin(), held_.end(), Pair{a, 0}, by_row);

@@ -30,7 +30,7 @@ bool is_valid(const Box<Real>& box) {
     return true;
 }
 
-/// Throws: Error{engine_failed} unless `valid`. NaN coordinates would break the ordering of boxes.
+/// Throws: Error{engine_failed} unless `valid`. The check is needed because NaN coordinates would break the sorting of boxes.
 void check_valid(bool valid, std::size_t object, const char* what) {
     if (valid) return;
     throw Error(ErrorCode::engine_failed, "verification failed: the " + std::string(what) + " of object " +
@@ -101,7 +101,7 @@ private:
         return best;
     }
 
-    /// Puts the boxes of the left child before those of the right one.
+    /// Partitions the boxes of a node: moves the boxes of its left child before the boxes of its right child.
     void halve(const Place& place, unsigned depth) {
         if (place.leaves < 2) return;
         const unsigned which = best_coordinate(place, depth);
@@ -179,7 +179,7 @@ std::size_t BoxTree<Real>::end_of(const Place& place) const {
 template <typename Real>
 void BoxTree<Real>::find(const BoxQuery& query, std::vector<std::uint32_t>& found) const {
     if (nodes_.empty()) return;
-    // At most one place of each level waits. Each level halves the number of leaves, which is at most 2^28.
+    // On each level at most one place waits. A level has half the leaves of the level above, and the root has at most 2^28 leaves.
     std::array<Place, 64> waiting;
     std::size_t count = 0;
     waiting[count++] = {0, 0, (nodes_.size() + 1) / 2};
@@ -196,8 +196,8 @@ void BoxTree<Real>::find(const BoxQuery& query, std::vector<std::uint32_t>& foun
     }
 }
 
-/// Has no branch on the outcome of a test, which the processor could not predict: each index is stored, and only a hit advances
-/// the count.
+/// Stores each index, but advances the count only after a hit. So there is no branch on the test's outcome, which the processor could not
+/// predict.
 template <typename Real>
 void BoxTree<Real>::find_in_leaf(const BoxQuery& query, const Place& leaf, std::vector<std::uint32_t>& found) const {
     std::array<std::uint32_t, leaf_boxes> hits;

@@ -1,6 +1,6 @@
 // BoxTree: a k-d tree over boxes as points of six dimensions (min x, y, z, max x, y, z).
 //
-// Result     every box of a set that is within reach of a query box. The rule of objects.hpp is evaluated in float64, on the
+// Result     every box of a set that is within reach of a query box. The pair rule of objects.hpp is evaluated in float64, on the
 //            numbers that the caller gave.
 // Invariants 1. A node covers a run of leaves; a leaf covers `leaf_boxes` boxes (the last leaf may have fewer). The left
 //               child covers the first half of the run, and follows its parent. The right child follows the left subtree.
@@ -27,7 +27,7 @@
 
 namespace octopair {
 
-/// A box that others are compared with, as the caller gave it, and how far it reaches.
+/// A query: a box in the caller's numbers, and the margin and padding that determine which boxes are within its reach.
 struct BoxQuery {
     Box3d box;
     double padding = 0;

@@ -1,4 +1,4 @@
-// Check of counts: the number of pairs is compared, because a count has no pairs to compare.
+// Check of calls that only count: compares the number of pairs with the number that the second algorithm finds.
 #include <atomic>
 
 #include "verification/result_check.hpp"

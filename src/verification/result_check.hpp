@@ -1,7 +1,7 @@
-// ResultCheck: compares what a call delivers with what the second algorithm finds.
+// ResultCheck: compares the pairs of a call's result with the pairs that the second algorithm (row_search.hpp) finds.
 //
-// Pairs are taken in the order of the result, in pieces of any length; finish() compares the rest. Both throw
-// Error{engine_failed} that names a pair, or the object whose pairs differ.
+// take() receives the pairs in the order of the result, in pieces of any length. finish() compares the rest. Both functions throw
+// Error{engine_failed} that names a wrong or missing pair, or the object whose pairs differ.
 #pragma once
 
 #include <cstdint>
@@ -19,22 +19,22 @@ namespace octopair {
 struct CallEnd {
     std::uint64_t pairs = 0;                             ///< number of pairs in the summary
     bool truncated = false;                              ///< Summary::truncated
-    std::span<const std::span<const Pair>> chunks = {};  ///< all pairs once more, where a list has them; else empty
+    std::span<const std::span<const Pair>> chunks = {};  ///< all pairs of the result if it is a list; otherwise empty
 };
 
 class ResultCheck {
 public:
     virtual ~ResultCheck() = default;
 
-    /// Not thread-safe.
+    /// Receives the next pairs of the result. Thread safety: one thread at a time.
     virtual void take(std::span<const Pair> pairs) = 0;
-    /// Call once, after the last pair.
+    /// Compares the pairs that take() has not compared. Call it once, after the last pair.
     virtual void finish(const CallEnd& end) = 0;
-    /// Returns text for users that names what this check cannot find in such a result; empty if it finds everything.
+    /// Returns a text for users that names the properties of such a result that this check does not check; empty if it checks everything.
     virtual std::string_view not_checked(const CallEnd& end) const = 0;
 };
 
-/// Returns a check of results in ascending order. Exact: each row is compared, pair by pair, once its last pair was taken.
+/// Returns a check of results in ascending order. Exact: compares the pairs (a, b) of each object a, pair by pair, after the last of them.
 /// Names the first pair in which the result differs. Memory: 1 MiB and the pairs of one object.
 std::unique_ptr<ResultCheck> make_ascending_check(const RowPass& pass);
 

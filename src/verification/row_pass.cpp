@@ -35,7 +35,7 @@ std::string fault_of_position(const RowSearch& rows, const Pair& pair) {
 
 namespace {
 
-/// Keeps the fault of the lowest row among the faults that several threads report.
+/// Receives faults from several threads, and keeps the fault of the lowest row.
 class LowestFault {
 public:
     void report(std::uint64_t row, std::string fault) {

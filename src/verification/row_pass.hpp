@@ -28,7 +28,7 @@ std::string name_of_pair(const Pair& pair);
 
 /// Returns whether both numbers of a pair name objects: a < rows, b < columns, and a < b within one set.
 bool has_position(const RowSearch& rows, const Pair& pair);
-/// Returns a message that says why has_position() is false. Requires: it is.
+/// Returns a message that says why has_position() is false. Requires: has_position() is false.
 std::string fault_of_position(const RowSearch& rows, const Pair& pair);
 
 struct RowRange {
@@ -47,7 +47,7 @@ public:
     const RowSearch& rows() const { return rows_; }
     Team& team() const { return team_; }
 
-    /// Handles one row. Called on several threads at once.
+    /// Checks one row: object `a` and the b of all its pairs. Called on several threads at once.
     using Visit = std::function<ResultFault(std::uint32_t a, std::span<const std::uint32_t> columns)>;
     /// Visits the rows of a range, each with its columns in the order `order`. Rows after a row with a fault may be skipped.
     /// Returns the fault of the lowest row. Throws: Error{cancelled}.

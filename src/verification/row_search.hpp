@@ -25,7 +25,7 @@ struct SearchedObjects {
     const Objects& first;
     const Objects* second = nullptr;  ///< the other set of a join; null: pairs within `first`
     double margin = 0;
-    /// A further condition of pairs (a, b), called by any thread; empty: none.
+    /// Further condition: (a, b) is a pair only if allows(a, b) is true. Any thread may call it. Empty: no further condition.
     std::function<bool(std::uint32_t a, std::uint32_t b)> allows = {};
 };
 

@@ -1,5 +1,6 @@
-// Check of results in any order. Each pair is tested alone. The pairs of each object are counted and hashed, to name the object
-// that differs. A 128-bit hash of all pairs decides. Hashes are sums, so the order of the pairs does not matter.
+// Check of results in any order. Each given pair is tested by the pair rule. A 128-bit hash of all given pairs is compared with that of
+// the pairs that the second algorithm finds. The pairs of each object are also counted and hashed, to name the object whose pairs differ.
+// Hashes are sums, so the order of the pairs does not matter.
 #include <algorithm>
 #include <atomic>
 #include <optional>
@@ -126,7 +127,7 @@ public:
     }
 
 private:
-    /// Throws if a kept pair was given twice. The sums of an incomplete row do not show this.
+    /// Throws if a kept pair was given twice. In a truncated result an object may lack pairs, so its sums do not show a duplicate.
     void check_kept_pairs() {
         std::sort(kept_.begin(), kept_.end());
         const auto twice = std::adjacent_find(kept_.begin(), kept_.end());
@@ -164,7 +165,8 @@ private:
         return name_of_pair({a, *missing}) + " is missing";
     }
 
-    /// Used if the pairs are not stored. The difference of the sums is the hash of a single missing or duplicate pair.
+    /// Describes the fault of an object's pairs if the pairs are not stored. If a single pair is missing or duplicate, its hash is the
+    /// difference of the sums, so the pair can be named.
     std::string fault_by_sums(std::uint32_t a, std::span<const std::uint32_t> expected) const {
         const std::uint64_t lacks = sum_of(expected).hash - hashes_[a];
         for (const std::uint32_t b : expected) {
@@ -185,7 +187,7 @@ private:
 
     const RowPass& pass_;
     std::vector<std::uint32_t> pairs_;   // number of given pairs, by a
-    std::vector<std::uint64_t> hashes_;  // sum of the hashes of their b, by a
+    std::vector<std::uint64_t> hashes_;  // sum of the hashes of the b of the given pairs, by a
     SharedSetSum given_;
     std::optional<Pair> last_;
     bool keeps_;

@@ -23,7 +23,8 @@ std::unique_ptr<ResultCheck> make_check(const Verifier::Setup& setup, const RowP
 
 }  // namespace
 
-/// Created with the first pair or at the end. By then the engine has accepted the objects, so their boxes are valid.
+/// The second algorithm and its data. Created at the first pair, or at the end if there is no pair: by then the engine has accepted the
+/// objects, so their boxes are valid.
 struct Verifier::Parts {
     Parts(const Setup& setup, const ProgressSink& progress)
         : team(setup.threads),

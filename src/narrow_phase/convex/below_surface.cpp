@@ -29,7 +29,8 @@ using Vector = Eigen::Vector3d;
 
 constexpr double unit_roundoff = std::numeric_limits<double>::epsilon();
 
-/// Returns the least m between two bounds for which the concave function has its greatest value in the ball: |y(m)| <= 1.
+/// Returns the least m between `below` and `above` for which the concave function of greatest_on_ball() has its maximum within the
+/// unit ball. The maximum is at y(m), so |y(m)| <= 1.
 double least_multiplier(const Vector& eigenvalues, const Vector& linear, double below, double above) {
     const auto is_in_ball = [&](double m) {
         return (linear.array() / (m - eigenvalues.array())).matrix().squaredNorm() <= 1;
@@ -64,7 +65,7 @@ double greatest_on_ball(const Quadratic& function) {
     const Vector& eigenvalues = solver.eigenvalues();
     const Vector linear = solver.eigenvectors().transpose() * function.linear;
     const double size = eigenvalues.cwiseAbs().maxCoeff() + linear.norm() + std::fabs(function.constant);
-    // Eigenvalues err by a few roundings of the largest one, so the multiplier stays so far above them.
+    // Eigenvalues err by a few roundings of the largest eigenvalue. So the multiplier exceeds them by more than this error.
     const double least =
         std::max(eigenvalues.maxCoeff(), 0.0) + 16 * unit_roundoff * size + std::numeric_limits<double>::min();
     const double m = least_multiplier(eigenvalues, linear, least, least + linear.norm());
@@ -105,7 +106,7 @@ double above_ellipsoid(const Point3d& radii, const Point3d& at) {
     return (vector::length({at[0] / radii[0], at[1] / radii[1], at[2] / radii[2]}) - 1) * least;
 }
 
-/// Height above a capsule, or above a sphere, whose two end points are equal. The axis is z.
+/// Returns the height of a point above a capsule whose axis is z, or above a sphere, which is a capsule with equal end points.
 double above_capsule(const ConvexSolid& solid, const Point3d& at) {
     const double half = solid.points.back()[2];
     return vector::length({at[0], at[1], at[2] - std::clamp(at[2], -half, half)}) - solid.radius;
@@ -137,7 +138,8 @@ bool is_below_cylinder(const Point3d& extents, const Ellipsoid& ellipsoid, doubl
            is_within_wall(ellipsoid, extents[0] - slack);
 }
 
-/// The height of the wall is across * distance from the axis - room, where room is `slack` less than along * distance below the tip.
+/// Returns true if the ellipsoid is more than `slack` below the surface of a cone. The height of a point above the wall is across *
+/// (distance from the axis) - along * (distance below the tip), with the parts of WallNormal.
 bool is_below_cone(const Point3d& extents, const Ellipsoid& ellipsoid, double slack) {
     const WallNormal normal = wall_normal(extents);
     const double room = normal.along * (extents[2] - ellipsoid.centre[2]) - slack;
@@ -156,12 +158,12 @@ bool is_below_ellipsoid(const Point3d& radii, const Ellipsoid& ellipsoid, double
 /// Returns true if the part of the ellipsoid with `from` <= z <= `to` is proven to lie in the ball around the origin.
 bool slab_is_within_ball(const Ellipsoid& ellipsoid, double radius, double from, double to) {
     const Quadratic distance = squared_length(ellipsoid.centre, ellipsoid.map);
-    // (z - middle)^2 - (half height)^2, which is at most 0 in the slab: its multiples, subtracted, lower the function only outside.
+    // (z - middle)^2 - (half height)^2 is at most 0 in the slab. So a multiple of it, subtracted, lowers the function only outside.
     const double middle = (from + to) / 2, half = (to - from) / 2;
     Quadratic outside = squared(ellipsoid.centre[2] - middle, ellipsoid.along(2));
     outside.constant -= half * half;
     const auto greatest = [&](double multiple) { return greatest_on_ball(sum(distance, outside, -multiple)); };
-    // The bound is a convex function of the multiple: golden section.
+    // The bound is a convex function of this multiple, so a golden-section search finds its minimum.
     constexpr double golden = std::numbers::phi - 1;
     double low = 0, high = 2 + 4 * radius / half;
     double first = high - golden * high, second = golden * high;

@@ -25,8 +25,9 @@ struct Ellipsoid {
     Ellipsoid moved(const Eigen::Vector3d& by) const { return {centre + by, map}; }
 };
 
-/// Returns the height of a point above the surface, below 0 inside. It is a distance inside all solids but the ellipsoid, whose surface
-/// is at least so far away. So a ball inside is as much higher as its radius, except in an ellipsoid.
+/// Returns the height of a point above the surface; it is negative inside. Inside, its absolute value is the distance from the surface;
+/// for an ellipsoid it is a lower bound of this distance. So a ball inside reaches as high as its centre plus its radius, except in an
+/// ellipsoid.
 double height_above(const ConvexSolid& solid, const Point3d& at);
 
 /// Returns true if the ellipsoid is proven to be more than `slack` below the surface of the solid.

@@ -19,7 +19,7 @@ namespace {
 
 using Core = ConvexSolid::Core;
 
-/// Objects whose convex hull is a convex object: balls, and the flat or solid ellipsoids that `map` makes of the unit ball.
+/// The parts of which an object is the convex hull: balls (points have radius 0), and ellipsoids, flat or solid.
 struct Parts {
     std::vector<Point3d> centres;
     double radius = 0;
@@ -79,7 +79,7 @@ Parts parts_of(const PosedConvex& convex, const LocalConvex& local) {
 
 /// Returns true if all parts are more than `slack` below the surface of a solid that is not a hull.
 bool are_below(const ConvexSolid& solid, const Pose& pose, const Parts& parts, double slack) {
-    // The pose is a rotation up to rounding, so its transpose is its inverse.
+    // The pose is a rotation up to rounding, so its transpose serves as its inverse.
     const Eigen::Matrix3d turn_back = turn_of(pose).transpose();
     const auto in_solid = [&](const Ellipsoid& one) {
         return Ellipsoid{turn_back * (one.centre - from(vector::place(pose))), turn_back * one.map};
@@ -131,7 +131,7 @@ bool hull_contains_disk(const PosedConvex& hull, const Ellipsoid& disk) {
         return from(
             Eigen::Vector3d(disk.centre + disk.map * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0) * distance));
     };
-    // An arc lies in the triangle of its ends and the corner in which the tangents of its ends meet.
+    // An arc of a circle lies in the triangle of its two ends and the corner where the tangents at the ends meet.
     struct Arc {
         double middle, half;
     };

@@ -4,8 +4,8 @@
 //           the least overlap.
 // Apart     If the cores do not meet, its direction is the one that proves their distance.
 // Meeting   If they meet, an expanding polytope finds it (find_least_overlap()).
-// Near      A small depth may be the error of its direction, which matters at the far points of a large object. Then the exact directions of
-//           faces and edges are tried, too (propose_face_directions()).
+// Near      A small depth may be the error of its direction, which matters at the far points of a large object. Then the exact
+//           directions of faces and edges are tried, too (propose_face_directions()).
 // Safety    If rounding misleads the search, the depth is larger than necessary, but the contact separates the objects.
 #include <algorithm>
 #include <array>
@@ -20,14 +20,14 @@
 namespace octopair {
 namespace {
 
-/// Proposes the axes of the pose of a box or a curved core. They are the exact normals of its plane faces.
+/// Proposes the axes of the pose of a box or a curved core, because they are the exact normals of its plane faces.
 void propose_axes(const LocalConvex& convex, LeastOverlap& least) {
     if (!convex.points().empty()) return;
     for (std::size_t axis = 0; axis < 3; ++axis) least.propose(vector::column(convex.pose(), axis));
 }
 
-/// Returns the middle of the part of the segment between the cores that lies within both radii; if the cores meet, a point in
-/// both.
+/// Returns a point in both objects. If the cores meet, it is a point in both cores. Otherwise it is on the segment between the cores: the
+/// middle of the part that lies within both radii.
 Point3d point_in_both(const LocalConvexPair& pair, const CoreGap& core) {
     const Point3d way = vector::minus(core.on_b, core.on_a);
     const double length = vector::length(way);
@@ -42,7 +42,7 @@ using vector::minus;
 using vector::plus;
 using vector::times;
 
-/// Up to six points of a core that are farthest along directions near a given one. Equal points are stored once.
+/// Up to six points of a core. Each is farthest along a direction near a given direction. Equal points are stored once.
 class NearPoints {
 public:
     /// `direction` has length 1.
@@ -58,7 +58,7 @@ public:
         };
         const Point3d first = vector::some_normal(direction), second = cross(direction, first);
         for (const Point3d& way : {first, second}) add_toward(way), add_toward(times(way, -1));
-        // The third corner of a triangle may be farthest only along directions that are perpendicular to the longest edge.
+        // The third corner of a thin triangle may be farthest only along directions perpendicular to the longest edge, so try these too.
         const Point3d edge = longest_edge(), across = cross(direction, edge);
         add_toward(across), add_toward(times(across, -1));
     }
@@ -85,7 +85,7 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Normals of the faces and directions of the edges of a core near a direction, of any length.
+/// Normals of those faces, and directions of those edges, that a core has near a direction. The vectors have any length.
 struct NearFeatures {
     std::array<Point3d, 20> normals = {};
     std::array<Point3d, 15> edges = {};
@@ -151,7 +151,7 @@ void propose_face_directions(const LocalConvexPair& pair, double enough, LeastOv
     }
 }
 
-/// Tries further directions if the depth is so small that it may be the error of the best direction.
+/// Tries further directions if the depth is so small that an error of the best direction may explain the whole depth.
 void improve_small_depth(const LocalConvexPair& pair, LeastOverlap& least) {
     constexpr double close = 1e-8, rounding_steps = 64;
     const auto may_be_error = [&](double error) {

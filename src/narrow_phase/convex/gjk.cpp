@@ -25,7 +25,7 @@ struct Vertex {
 
 using Weights = std::array<double, 4>;
 
-/// Up to four vertices of the Minkowski difference, and the nearest point to the origin found in them.
+/// Up to four vertices of the Minkowski difference, and the point of their convex hull that is nearest to the origin.
 class Simplex {
 public:
     /// `slack`: rounding error of a vertex.
@@ -37,7 +37,7 @@ public:
                            [&](const Vertex& one) { return one.apart == vertex.apart; });
     }
 
-    /// Finds the nearest point and removes the vertices with weight 0.
+    /// Finds the nearest point, and removes the vertices that have weight 0 in it.
     void reduce() {
         best_ = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < count_; ++i) {
@@ -122,8 +122,8 @@ private:
         const double whole = vector::dot(x, vector::cross(y, z));
         Weights inside = {1, 0, 0, 0};
         Point3d rest = vector::times(at(0), -1);
-        // In a flat simplex the rounding of the first weights is large: the next ones correct it. They may still be meaningless, so
-        // they are accepted only if they do give the origin.
+        // In a flat simplex the rounding error of the first weights is large, so two more steps correct the weights. The weights may
+        // still be wrong, so they are accepted only if the weighted sum of the vertices is the origin.
         for (int step = 0; step < 3; ++step) {
             const double of_x = inside[1] + vector::dot(rest, vector::cross(y, z)) / whole;
             const double of_y = inside[2] + vector::dot(x, vector::cross(rest, z)) / whole;
@@ -162,12 +162,13 @@ Vertex support(const LocalConvexPair& pair, const Point3d& direction) {
     return vertex;
 }
 
-/// A lower bound on the distance, and the direction that proves it: all vertices of the difference are so far along it.
+/// A lower bound on the distance, and the direction that proves it: along this direction, all vertices of the difference are at least this
+/// far from the origin.
 struct Proof {
     double at_least = 0;
     Point3d direction = {};
 
-    /// Takes a direction of length 1 if it proves more. Returns the vertex that is least far along it.
+    /// Replaces the proof if `unit`, a direction of length 1, proves a larger bound. Returns the vertex that is least far along `unit`.
     Vertex try_direction(const LocalConvexPair& pair, const Point3d& unit) {
         const Vertex least = support(pair, vector::times(unit, -1));
         const double bound = vector::dot(least.apart, unit) - pair.slack();
@@ -176,8 +177,8 @@ struct Proof {
     }
 };
 
-/// Improves a proof by the faces around the nearest point, whose normals are like `direction`. Needed for two faces close to each other: if
-/// the nearest points lie on an edge or corner, the short gap does not determine the normal.
+/// Improves a proof: tries the normals of faces around the nearest point that are close to `direction`. Two parallel faces that are near
+/// each other need this. If their nearest points lie on an edge or corner, the short gap between them does not determine the normal.
 void prove_by_faces(const LocalConvexPair& pair, std::span<const Vertex> vertices, const Point3d& direction,
                     Proof& proof) {
     constexpr double aside = 1e-5, alike = 0.999;
@@ -214,9 +215,10 @@ struct ProvenDirection {
 
 /// Searches a direction that proves the objects apart, beginning with the vertices of a simplex.
 ///
-/// If one object is much larger than the other one, the difference of the objects has vertices near the origin and far ones. Then rounding at
-/// the far ones may end the search for the distance before the near ones are right. Whether a direction proves the objects apart does not
-/// depend on how far a vertex is. So this search is GJK with all vertices moved to the unit sphere.
+/// If one object is much larger than the other, the difference has vertices near the origin and vertices far from it. Then rounding
+/// errors of the far vertices may end the search for the distance before it has found the right near vertices. Whether a direction
+/// proves the objects apart does not depend on the distance of a vertex. So this search is GJK with all vertices moved to the unit
+/// sphere.
 std::optional<ProvenDirection> search_directions(const LocalConvexPair& pair, const Simplex& simplex) {
     constexpr int max_steps = 64;
     constexpr double rounding = 1e-12;
@@ -259,7 +261,8 @@ CoreGap gap_of(const Simplex& simplex, const Proof& proof) {
     return gap;
 }
 
-/// Returns the gap after a search for the distance that has found `simplex`, but could not prove that the objects are apart.
+/// Returns the gap of two objects that gjk_distance() could not prove to be apart: searches directions instead. `simplex`: the last simplex
+/// of gjk_distance().
 CoreGap gap_by_directions(const LocalConvexPair& pair, const Simplex& simplex) {
     auto found = search_directions(pair, simplex);
     if (!found) return gap_of(simplex, {});

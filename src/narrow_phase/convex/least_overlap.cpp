@@ -69,7 +69,7 @@ public:
         return faces_.empty() ? -waiting : std::min(waiting, least_tried_);
     }
 
-    /// Replaces the nearest face by farther ones. Returns true if the least overlap was found.
+    /// Replaces the nearest face by faces farther from the origin. Returns true if the least overlap was found.
     bool grow() {
         for (skip_removed(); !nearest_.empty(); skip_removed()) {
             const auto [height, face] = nearest_.top();
@@ -92,11 +92,11 @@ private:
         Point3d normal = {};  // 0 for a face without area
         double height = std::numeric_limits<double>::infinity();
         bool removed = false;
-        std::size_t reached_from = 0;  // number of points when the face was last found to be visible
+        std::size_t reached_from = 0;  // number of points when a new point last saw this face
     };
     struct Edge {
         std::uint32_t from, to;
-        std::uint32_t face;  // beyond the edge; it stays
+        std::uint32_t face;  // face beyond the edge; it is not replaced
     };
 
     void skip_removed() {
@@ -220,8 +220,8 @@ private:
     double slack_;
     std::vector<Point3d> points_;
     std::vector<Face> faces_;
-    std::priority_queue<Nearest, std::vector<Nearest>, std::greater<>> nearest_;  // faces that were not tried
-    double least_tried_ = std::numeric_limits<double>::infinity();  // height of the faces that were tried and stay
+    std::priority_queue<Nearest, std::vector<Nearest>, std::greater<>> nearest_;  // faces whose normals were not tried
+    double least_tried_ = std::numeric_limits<double>::infinity();                // of tried faces that are still there
     std::vector<std::uint32_t> visible_;
     std::vector<Edge> outline_;
 };

@@ -18,7 +18,7 @@ public:
     /// Borrows `pair`.
     explicit LeastOverlap(const LocalConvexPair& pair) : pair_(pair) {}
 
-    /// Tries both senses of a direction of any length. Does nothing if it has no length.
+    /// Tries a direction and its opposite. The direction has any length; does nothing if its length is 0.
     void propose(const Point3d& direction) {
         const double length = vector::length(direction);
         if (!(length > 0) || !std::isfinite(length)) return;
@@ -36,7 +36,8 @@ public:
         return vertex;
     }
 
-    /// Turns the best direction along the valley of small overlaps that it is in, then across it, and again with smaller turns.
+    /// Improves the best direction by small turns: along the valley of small overlaps around it, then across the valley. Repeats this with
+    /// smaller turns.
     void descend() {
         double reach = 1.2, difference = 1e-3;
         for (int round = 0; round < 10; ++round) {
@@ -61,8 +62,8 @@ private:
         return vector::dot(consider(normal), normal);
     }
 
-    /// Returns the tangent at normal() along which the overlap rises least on both sides, and the one across. The overlap may have a
-    /// fold along it.
+    /// Returns the tangent at normal() along which the overlap rises least on both sides, and the tangent perpendicular to it. The
+    /// overlap may have a fold along the first tangent.
     std::array<Point3d, 2> valley(double difference) {
         const Point3d from = normal_, some = vector::some_normal(from);
         const Point3d u = vector::times(some, difference / vector::length(some)), v = vector::cross(from, u);
@@ -78,7 +79,7 @@ private:
         return {vector::times(at(angle), 1 / difference), vector::times(at(angle + pi / 2), 1 / difference)};
     }
 
-    /// Searches the directions that normal() reaches when it is turned toward `way`, by at most `reach` in both senses.
+    /// Tries directions that normal() becomes when it is turned toward `way` or away from it, by at most `reach`.
     void turn_along(const Point3d& way, double reach) {
         const Point3d from = normal_;
         (void)least_of([&](double turn) { return overlap_toward(from, vector::times(way, turn)); },
@@ -89,7 +90,8 @@ private:
         double low, high;
         int samples;
     };
-    /// Returns about where a function is least: evaluates samples, then golden sections beside the least.
+    /// Returns approximately the place where a function is least. Evaluates samples, then runs a golden-section search around the
+    /// least sample.
     template <typename Function>
     static double least_of(const Function& function, const Interval& interval) {
         const double step = (interval.high - interval.low) / interval.samples;
@@ -121,10 +123,10 @@ private:
     Point3d normal_ = {1, 0, 0};
 };
 
-/// Tries directions with `least` until the least overlap is found to `slack` or a relative 1e-10, or, of pairs with very many
-/// directions of nearly least overlap, until the search gives up; the overlap is then right to the second order of the
-/// distance to the best direction. Returns a proven lower bound on the least overlap, or minus infinity for a difference without
-/// volume. `slack`: rounding error of a point of the difference.
+/// Tries directions with `least` until the least overlap is known to `slack` or to a relative 1e-10. `slack`: rounding error of a point of
+/// the difference. Gives up earlier for pairs that have very many directions of nearly least overlap. The error of the overlap is then of
+/// second order in the angle to the best direction.
+/// Returns a proven lower bound on the least overlap; minus infinity for a difference without volume.
 double find_least_overlap(LeastOverlap& least, double slack);
 
 }  // namespace octopair

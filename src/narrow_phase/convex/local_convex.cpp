@@ -36,8 +36,8 @@ double size_of(const PosedConvex& convex) {
     return most + solid.radius;
 }
 
-/// Returns true if `a` is the first of the pair: the larger one. Ties are broken by place, kind, core, pose, extents and
-/// points, so the result does not depend on the order of the arguments.
+/// Returns true if `a` is the first object of the pair: the larger object. Ties are broken by place, kind, core, pose, extents and
+/// points. So the order of the arguments does not matter.
 bool solid_comes_first(const PosedConvex& a, const PosedConvex& b) {
     const double size_a = size_of(a), size_b = size_of(b);
     if (size_a != size_b) return size_a > size_b;
@@ -140,13 +140,13 @@ int exponent_of(double size) { return std::ilogb(std::min(size, std::numeric_lim
 
 }  // namespace
 
-/// A convex object that owns its numbers.
+/// A scaled copy of a convex object. It owns the solid, the pose and the points that `convex` borrows.
 struct ScaledPair::Scaled {
     ConvexSolid solid;
     Pose pose;
     std::array<Point3d, 3> triangle = {};
     Point3d point = {};
-    PosedConvex convex;  // borrows one of the others
+    PosedConvex convex;  // borrows the other members
 
     Scaled(const PosedConvex& whole, int exponent) : convex(point) {
         if (whole.point()) {

@@ -1,4 +1,5 @@
-// LocalConvexPair: two convex objects in local coordinates near the smaller of them. ScaledPair: the same in suitable units.
+// LocalConvexPair: two convex objects in local coordinates near the smaller object.
+// ScaledPair: copies of two very large or very small convex objects, in units in which their numbers are about 1.
 //
 // Origin    A point of the smaller object: its first corner, its first point or its centre. The axes are those of the world.
 // Order     a() is the larger object and b() the smaller one, whichever the caller passes first (see swapped()).

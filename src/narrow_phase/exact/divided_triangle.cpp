@@ -40,7 +40,7 @@ void DividedTriangle::divide(const Triangle3d& other) {
 bool DividedTriangle::any_face(const Visit& visit) {
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
-    // Without edges there is one face, and any corner will do.
+    // Without edges there is one face, and a point near any corner lies in it. So one corner is enough.
     for (std::size_t i = 0; i < (edges_.empty() ? 1 : 3); ++i) {
         const NearbyPoint point(Place::at(corners_[i]), corners_[(i + 1) % 3], corners_[(i + 2) % 3], axis_);
         if (visit(point)) return true;
@@ -54,12 +54,12 @@ bool DividedTriangle::any_face(const Visit& visit) {
     return false;
 }
 
-/// Lists the places of an edge at which the faces beside it change.
+/// Lists the places on an edge at which the face on either side of the edge may change: its ends, and its meetings with other edges.
 void DividedTriangle::list_places_on(const Segment3d& edge) {
     places_ = {Place::at(edge[0]), Place::at(edge[1])};
     for (std::size_t i = 0; i < 3; ++i) list_meeting(edge, own_edge(i));
-    // Edges begin in ascending order of x. Those that begin further before this one than the longest is long end before it; the
-    // factor allows for the rounding of the difference.
+    // Edges are sorted by the x of their begins. An edge whose begin is more than `longest_` below the begin of this edge also ends
+    // before this edge, so the search skips it. The factor covers the rounding of the difference.
     const double first = edge[0][0] - longest_ * (1 + 1e-12);
     const auto begins_before = [](const Segment3d& other, double x) { return other[0][0] < x; };
     for (auto other = std::lower_bound(edges_.begin(), edges_.end(), std::nextafter(first, -HUGE_VAL), begins_before);
@@ -82,7 +82,8 @@ void DividedTriangle::list_meeting(const Segment3d& edge, const Segment3d& other
     }
 }
 
-/// Visits the face to the left of an edge, behind `place` on the way from its begin to its end, if it is in the triangle.
+/// Visits the face to the left of an edge, just after `place` on the way from way[0] to way[1]. Does nothing if this face is outside the
+/// triangle.
 bool DividedTriangle::left_of(const Place& place, const Segment3d& way, const Visit& visit) const {
     if (!place.crossing && place.on[0] == way[1]) return false;
     const auto left =

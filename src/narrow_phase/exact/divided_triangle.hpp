@@ -22,7 +22,7 @@ public:
     void divide(const Triangle3d& other);
 
     using Visit = std::function<bool(const NearbyPoint&)>;
-    /// Calls visit(point) for one or more points in each face, until it returns true. Returns whether it did.
+    /// Calls visit(point) for one or more points in each face, until `visit` returns true. Returns whether `visit` returned true.
     bool any_face(const Visit& visit);
 
 private:
@@ -35,9 +35,9 @@ private:
 
     Triangle3d corners_;  // counterclockwise along axis_
     unsigned axis_;
-    std::vector<Segment3d> edges_;  // the lesser end first
+    std::vector<Segment3d> edges_;  // each with its lexicographically smaller end first
     double longest_ = 0;            // greatest extent of an edge along x
-    std::vector<Place> places_;     // of the current edge
+    std::vector<Place> places_;     // places that list_places_on() found on the current edge
 };
 
 }  // namespace octopair

@@ -13,7 +13,7 @@ namespace {
 using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>, boost::multiprecision::et_off>;
 using IntegerPoint = std::array<Integer, 3>;
 
-/// Points as integers, on a common grid, relative to the first.
+/// Returns the points as integers: multiples of the step of a common grid, relative to the first point.
 template <std::size_t count>
 std::array<IntegerPoint, count> integers_of(const std::array<const Point3d*, count>& points) {
     std::array<double, 3 * count> numbers;
@@ -34,8 +34,8 @@ Integer line_value(const IntegerPoint& a, const IntegerPoint& b, const IntegerPo
     return (b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]);
 }
 
-/// Returns the sign at the crossing of an affine function that has the values `begin` and `end` at the ends of the segment
-/// `on`. The crossing divides the segment in the ratio of the heights of its ends above `across`.
+/// Returns the sign that an affine function has at a crossing. The function has the values `begin` and `end` at the ends of the
+/// segment Place::on. The crossing divides this segment in the ratio of the heights of its ends above Place::across.
 int sign_between(const Integer& begin, const Integer& end, const Integer& height_begin, const Integer& height_end) {
     const Integer sum = abs(height_end) * begin + abs(height_begin) * end;
     return sum.sign();
@@ -60,7 +60,7 @@ int exact_line_side(const Place& place, const Point3d& a, const Point3d& b, unsi
                         line_value(from, to, begin, place.axis), line_value(from, to, end, place.axis));
 }
 
-/// Returns the sign of an affine function at a place. `side(point)`: its sign at a point; `between()`: at the crossing.
+/// Returns the sign of an affine function at a place. side(point) returns its sign at a point, and between() its sign at the crossing.
 template <typename Side, typename Between>
 int side_of_place(const Place& place, const Side& side, const Between& between) {
     const int begin = side(place.on[0]);
@@ -89,7 +89,7 @@ int NearbyPoint::line_side(const Point3d& a, const Point3d& b, unsigned along) c
     if (const int at = side_of_place(place, side, [&] { return exact_line_side(place, a, b, along); })) return at;
     if (const int at = side(first)) return at;
     if (const int at = side(second)) return at;
-    // Moving a point upward brings it to the left of a line that goes right; moving it right, to the right of a line that
+    // A point that moves upward gets to the left of a line that goes right. A point that moves right gets to the right of a line that
     // goes up.
     const unsigned u = (along + 1) % 3, v = (along + 2) % 3;
     if (axis == v) return sense * order(b[u], a[u]);

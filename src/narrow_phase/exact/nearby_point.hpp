@@ -1,4 +1,4 @@
-// NearbyPoint: a point infinitesimally near a place in the plane of a triangle, and exact signs of it.
+// NearbyPoint: a point infinitesimally near a place in the plane of a triangle. Tells exactly on which side of planes and lines it is.
 //
 // Place     A given point, or the crossing of two segments that lie in one plane.
 // Nearness  The place is moved by e towards a first point, by e^2 towards a second point, and by e^3 along an axis, with an

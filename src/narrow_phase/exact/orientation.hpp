@@ -39,7 +39,7 @@ public:
         return sign != 0 ? sign : exact_plane_side(a_, b_, c_, d);
     }
 
-    /// Returns the same sign, or 0 if float64 cannot decide it.
+    /// Returns the sign of operator() if float64 decides it, otherwise 0.
     int rounded(const Point3d& d) const {
         const double dx = d[0] - a_[0], dy = d[1] - a_[1], dz = d[2] - a_[2];
         const double sum = dx * normal_[0] + dy * normal_[1] + dz * normal_[2];

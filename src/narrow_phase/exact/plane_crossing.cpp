@@ -44,7 +44,7 @@ RoundedHeight rounded_height(const ProjectedLine& line, const Point3d& place) {
     return {left - right, filter::line_error * (std::abs(left) + std::abs(right)) + filter::underflow};
 }
 
-/// Returns begin / (begin - end). Requires: the heights have different signs.
+/// Returns begin / (begin - end), for the heights of two ends. Requires: `begin` and `end` have different signs.
 double part_of(Integer begin, Integer end) {
     begin = abs(begin), end = abs(end);
     Integer whole = begin + end;

@@ -60,7 +60,7 @@ private:
         if (alone(sides, 1)) return {1, 2, 0};
         return {2, 0, 1};
     }
-    /// Returns the side that the lone corner counts as: opposite to corner 1 if the lone corner is in the plane.
+    /// Returns the side of the lone corner. If the lone corner is in the plane, returns the side opposite to that of corner 1.
     static int up(const CornerSides& sides, const CornerOrder& corners) {
         return sides[corners[0]] != 0 ? sides[corners[0]] : -sides[corners[1]];
     }
@@ -82,7 +82,8 @@ struct ProjectedLine {
     const Point3d &a, &b;
     unsigned axis;
 };
-/// Returns the same fraction for the crossing with a projected line.
+/// Returns the crossing with a projected line as a fraction of the projected segment, 0 at `begin` and 1 at `end`. Requires: as for
+/// part_to_plane(), with the line in place of the plane.
 double part_to_line(const ProjectedLine& line, const Point3d& begin, const Point3d& end);
 
 }  // namespace octopair

@@ -16,8 +16,8 @@ struct Across {
 
 int compare(double a, double b) { return int(a > b) - int(a < b); }
 
-/// Returns line_side() of `place`, moved by e on v and e^2 on u; 0 only if the edge is projected to a point. Moving it upward
-/// brings it to the left of an edge that goes right. Moving it right brings it to the right of an edge that goes up.
+/// Returns line_side() of `place` after a move by e on v and by e^2 on u; 0 only if the edge is projected to a point. A place that moves
+/// upward gets to the left of an edge that goes right. A place that moves right gets to the right of an edge that goes up.
 int moved_line_side(const Point3d& begin, const Point3d& end, const Point3d& place, const Across& across) {
     const int side = line_side(begin, end, place, across.axis);
     if (side != 0) return side;

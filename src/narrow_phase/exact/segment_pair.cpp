@@ -79,7 +79,7 @@ bool segment_meets_triangle(const Segment3d& segment, const Triangle3d& triangle
     const int end = plane_side(a, b, c, segment[1]);
     if (begin * end > 0) return false;
     if (begin == 0 && end == 0) return coplanar_segment_meets(segment, triangle, projection);
-    // The segment's line crosses the plane in one point. It is in the triangle unless the line passes two edges on different
+    // The segment's line crosses the plane in one point. This point is outside the triangle only if the line passes two edges on different
     // sides.
     const int ab = plane_side(segment[0], segment[1], a, b);
     const int bc = plane_side(segment[0], segment[1], b, c);

@@ -61,7 +61,7 @@ TriangleContact crossing_contact(const std::array<Triangle3d, 2>& triangles, con
     return contact;
 }
 
-/// Corners and edges of a triangle. A degenerate triangle has those of its segment or point.
+/// Corners and edges of a triangle. For a degenerate triangle: the ends and the edge of its segment, or its only point.
 class Outline {
 public:
     explicit Outline(const Triangle3d& triangle) : projection_(projection_of(triangle)), corners_(triangle) {
@@ -173,7 +173,7 @@ struct Extent {
     }
 };
 
-/// The shortest translation that separates two triangles, among the directions offered.
+/// The shortest translation that separates two triangles, among translations along the directions that were tried.
 class MinimumTranslation {
 public:
     explicit MinimumTranslation(const CenteredTriangles& near) : near_(near) {}
@@ -233,7 +233,7 @@ TriangleDepth triangle_depth(const Triangle3d& a, const Triangle3d& b) {
         for (const Point3d& b_edge : b_edges) least.offer(across(a_edge, b_edge));
     }
     for (const auto* edges : {&a_edges, &b_edges}) {
-        // No direction found: all edges lie along one line. Any translation across that line separates the triangles.
+        // No direction was tried, because all edges are parallel to one line. Any translation across this line separates the triangles.
         for (const Point3d& edge : *edges) {
             if (!least.found()) least.offer(vector::some_normal(edge));
         }

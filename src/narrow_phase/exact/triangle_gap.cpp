@@ -22,7 +22,7 @@ using vector::minus;
 using vector::plus;
 using vector::times;
 
-/// The nearest pair of points among those offered.
+/// The nearest pair of points among the candidates that were tried.
 struct Nearest {
     Point3d on_a = {}, on_b = {};
     double square = std::numeric_limits<double>::infinity();
@@ -49,7 +49,7 @@ struct GapEdge {
     Point3d nearest(const Point3d& place) const { return at(part_nearest(way, minus(place, begin))); }
 };
 
-/// Offers the nearest points of the edges' lines, if both lie strictly between the ends.
+/// Tries the nearest points of the two edges' lines as a candidate, if both points lie strictly between the ends of their edges.
 void try_edges(const GapEdge& a, const GapEdge& b, Nearest& nearest) {
     const Point3d between = minus(a.begin, b.begin);
     const double aa = dot(a.way, a.way), ab = dot(a.way, b.way), bb = dot(b.way, b.way);
@@ -120,7 +120,7 @@ TriangleGap triangle_gap(const Triangle3d& a, const Triangle3d& b) {
 double triangle_gap(const Point3d& point, const Triangle3d& triangle) {
     const Triangle3d place = {point, point, point};
     const CenteredTriangles near(place, triangle);
-    const Triangle3d& corners = near.b;  // relative to `point`
+    const Triangle3d& corners = near.b;  // coordinates relative to `point`
     Nearest nearest;
     for (const GapEdge& edge :
          {GapEdge{corners[0], corners[1]}, GapEdge{corners[1], corners[2]}, GapEdge{corners[2], corners[0]}}) {

@@ -25,7 +25,7 @@ public:
         return x + y + z;
     }
 
-    /// Returns true if a difference of two positions is certainly above 0. False if any position was not finite.
+    /// Returns true if `difference`, of two positions, exceeds its rounding error. Returns false if a position was not finite.
     bool clear(double difference) const { return difference > 0x1p-49 * sizes_ + filter::underflow; }
 
 private:
@@ -47,7 +47,7 @@ bool clearly_apart(const Triangle3d& a, const Triangle3d& b) {
     return along.clear(low - high);
 }
 
-/// Returns the sides; 0 where float64 cannot decide.
+/// Returns the side of the plane for each corner of the triangle; 0 for corners whose side float64 cannot decide.
 CornerSides rounded_sides(const PlaneSides& plane, const Triangle3d& triangle) {
     return {plane.rounded(triangle[0]), plane.rounded(triangle[1]), plane.rounded(triangle[2])};
 }
@@ -64,7 +64,7 @@ bool edge_separates(const Triangle3d& a, const Projection& projection, const Tri
     return false;
 }
 
-/// Requires: the triangles lie in one plane, or one of them is degenerate.
+/// Returns true if the triangles have a common point. Requires: the triangles lie in one plane, or one of them is degenerate.
 bool flat_triangles_meet(const Triangle3d& a, const Triangle3d& b) {
     const Projection a_projection = projection_of(a), b_projection = projection_of(b);
     if (a_projection.axis == 3) return segment_meets_triangle(hull_of_degenerate(a), b);
@@ -89,7 +89,8 @@ bool clearly_apart(const Fan& fan) {
     return along.clear(std::min(low, -high));
 }
 
-/// Returns the triangle twice; if it is degenerate, the two segments from the shared corner instead.
+/// Returns two triangles that together cover the triangle of the shared corner and `others`. They are the triangle itself, twice. If it is
+/// degenerate, they are the two segments from the shared corner, as triangles.
 std::array<Triangle3d, 2> parts_of(const Point3d& shared, const std::array<const Point3d*, 2>& others) {
     const Triangle3d whole = {shared, *others[0], *others[1]};
     if (!is_degenerate(whole)) return {whole, whole};

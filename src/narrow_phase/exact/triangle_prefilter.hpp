@@ -1,4 +1,4 @@
-// Prefilter of triangle pairs: finds the pairs that float64 alone proves to be apart.
+// Prefilter of triangle pairs: finds pairs that float64 proves to be apart. The other pairs need the exact test.
 //
 // It tests up to eight pairs at a time with SIMD instructions. Most pairs of a mesh are neighbours, or close to each other in a
 // smooth part of the mesh; the prefilter decides these.

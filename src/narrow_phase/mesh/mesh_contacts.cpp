@@ -54,7 +54,7 @@ Point3d middle_of_box(const Box3d& box) {
     return middle;
 }
 
-/// Search for the deepest sample of another mesh inside the mesh `outer`.
+/// Finds the depth of the deepest sample of another mesh inside the mesh `outer`.
 class DepthSearch {
 public:
     DepthSearch(const PosedMesh& outer, const std::stop_token& stop)
@@ -73,7 +73,8 @@ public:
     }
 
 private:
-    /// Returns the corners and centroids of triangles that lie in the box of `outer`. Neighbours follow one another.
+    /// Returns those corners and centroids of triangles of `inner` that lie in the box of `outer`. Neighbouring places follow one another,
+    /// because SurfaceProbe is then faster.
     std::vector<Point3d> places_of(const PosedMesh& inner) const {
         std::vector<Point3d> places;
         std::vector<bool> seen(inner.tree.vertices.size());
@@ -92,7 +93,7 @@ private:
         return places;
     }
 
-    /// Updates the deepest depth. Cheap tests come first, because few places are deeper than all before.
+    /// Updates deepest_ if `place` is deeper. Runs cheap tests first, because few places are deeper than all places before.
     void test_place(const Point3d& place) {
         if (vector::length(vector::minus(place, outside_)) < outside_radius_) return;
         const double distance = probe_.distance(place, deepest_);
@@ -109,7 +110,7 @@ private:
     Box3d box_;
     SurfaceProbe probe_;
     double deepest_ = 0;
-    // A ball around the last place found outside; it does not reach the surface, so all of it is outside.
+    // A ball around the last place that was found outside. The ball does not reach the surface, so each place in it is outside, too.
     Point3d outside_ = {};
     double outside_radius_ = 0;
 };
@@ -151,8 +152,8 @@ private:
     const PosedMesh &a_, &b_;
     const ContactRequest& request_;
     bool crossing_ = false;                    // triangles pass through each other
-    std::vector<TouchingTriangles> touching_;  // all that meet, unless some pass through each other
-    double deepest_ = 0;                       // depth of the deepest contact, kept or not
+    std::vector<TouchingTriangles> touching_;  // all pairs of triangles that meet; incomplete once crossing_ is true
+    double deepest_ = 0;                       // depth of the deepest contact, also of contacts beyond max_contacts
     DeepestContacts contacts_;
 };
 

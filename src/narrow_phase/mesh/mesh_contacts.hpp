@@ -17,7 +17,7 @@ struct ContactRequest {
     std::uint32_t max_contacts;  ///< maximum number of contacts in the result
     /// After a stop request the search ends soon; its result is then unspecified. Borrowed.
     const std::stop_token& stop;
-    double tolerance = 0;            ///< what a translation of at most this length separates is touching
+    double tolerance = 0;            ///< objects that a translation of at most this length separates are touching
     double duplicate_tolerance = 0;  ///< largest distance of the corners of duplicates
     double max_error = 0;            ///< of a depth that counts as the least (is_solid())
 };

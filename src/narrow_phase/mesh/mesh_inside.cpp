@@ -14,7 +14,7 @@ namespace {
 Box3d box_of(const Point3d& from) { return {{from[0], from[1], from[2]}, {from[0], from[1], from[2]}}; }
 Box3d box_of(const NearbyPoint& from) { return from.box(); }
 
-/// Returns false only if rays from the box `from` miss the node's box.
+/// Returns false only if all rays in the positive direction of x that start in the box `from` miss the node's box.
 bool may_pass(const WorldBoxes& boxes, const MeshNode& node, const Box3d& from) {
     for (int row = 0; row < 3; ++row) {
         const auto [low, high] = boxes.span(node, row);

@@ -20,7 +20,7 @@ namespace octopair {
 
 namespace {
 
-/// One mesh of a pair as seen by the other.
+/// The two meshes of a pair, in one of two roles: faces and parts of `own` are tested against the interior of `other`.
 struct View {
     const PosedMesh& own;
     const PosedMesh& other;
@@ -28,8 +28,8 @@ struct View {
     std::uint32_t TouchingTriangles::*other_place;
 };
 
-/// Returns true if the face of the own mesh that `point` is in lies inside the other mesh, or on its surface with the interiors of
-/// both on the same side.
+/// Tests the face of the own mesh that holds `point`. Returns true if the face lies inside the other mesh, or if it lies on the other
+/// mesh's surface with the interiors of both meshes on the same side.
 bool face_meets(const View& view, NearbyPoint point) {
     std::array<bool, 2> inside;
     for (const std::size_t i : {0U, 1U}) {
@@ -52,7 +52,7 @@ bool faces_meet(const View& view, std::vector<TouchingTriangles> touching, const
         while (end < touching.size() && touching[end].*view.own_place == place) ++end;
         const Triangle3d triangle = view.own.tree.world_triangle(view.own.pose, place);
         const Projection projection = projection_of(triangle);
-        if (projection.axis == 3) continue;  // the faces of its neighbours reach all its points
+        if (projection.axis == 3) continue;  // degenerate: faces of neighbouring triangles reach all its points
         DividedTriangle divided(triangle, projection);
         for (std::size_t i = begin; i < end; ++i) {
             divided.divide(view.other.tree.world_triangle(view.other.pose, touching[i].*view.other_place));
@@ -86,7 +86,7 @@ int side_of_mesh(const PlaneSides& plane, const PosedMesh& mesh) {
     return all;
 }
 
-/// Returns true if the plane of a triangle that touches separates the meshes. Tries a few only.
+/// Returns true if the meshes lie on different sides of the plane of a touching triangle. Tries only a few of these planes.
 bool are_separated(const PosedMesh& a, const PosedMesh& b, std::span<const TouchingTriangles> touching) {
     constexpr std::size_t tries = 4;
     for (std::size_t i = 0; i < tries && i < touching.size(); ++i) {

@@ -18,7 +18,7 @@ template <typename Leaves>
 void visit_leaves(const PosedMesh& a, const PosedMesh& b, float reach, const Leaves& leaves) {
     if (a.tree.nodes.empty() || b.tree.nodes.empty()) return;
     MeshWalk walk(a, b, reach);
-    // The first search finds one pair of leaves only: often the caller needs no more.
+    // The first search asks for one pair of leaves only, because often the caller needs no further pair.
     std::array<NodePair, 16> some;
     for (std::size_t room = 1;; room = some.size()) {
         const unsigned found = next_leaves(walk, std::span(some).first(room));

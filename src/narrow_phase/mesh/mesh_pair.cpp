@@ -21,7 +21,7 @@ bool visit_meeting(const WorldLeaf& a, const WorldLeaf& b, const Visit& visit) {
     return true;
 }
 
-/// Search for the smallest distance: depth first, with the nearer of two children first.
+/// Finds the smallest distance of two surfaces by a depth-first traversal, which visits the nearer of two children first.
 class GapSearch {
 public:
     GapSearch(const PosedMesh& a, const PosedMesh& b, double most)

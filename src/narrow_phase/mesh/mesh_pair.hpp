@@ -55,7 +55,7 @@ void visit_meeting_triangles(const PosedMesh& a, const PosedMesh& b,
 /// Returns true if the point is inside the mesh: the winding number of the closed, oriented parts is not 0, or an odd number of
 /// closed parts without a consistent orientation contains the point. Requires: the point is not on the surface.
 bool encloses(const PosedMesh& mesh, const Point3d& point);
-/// Returns the same for a point infinitely near a place. The place may be on the surface.
+/// Returns true if a point infinitesimally near a place is inside the mesh. The place may be on the surface.
 bool encloses(const PosedMesh& mesh, const NearbyPoint& point);
 
 /// Returns true if some part of `inner` lies inside `outer`. Requires: the surfaces do not meet.

@@ -19,8 +19,8 @@ public:
     /// Borrows the mesh. Requires: the mesh has triangles.
     explicit SurfaceProbe(const PosedMesh& mesh) : mesh_(mesh), boxes_(mesh) {}
 
-    /// Returns the distance, 0 on the surface. If the distance is at most `enough`, returns any number from the distance to
-    /// `enough`, which is much cheaper.
+    /// Returns the distance, 0 on the surface. If the distance is at most `enough`, the search ends early and may return any number from
+    /// the distance to `enough`.
     double distance(const Point3d& point, double enough) {
         double least = gap(point, nearest_);
         NodeStack<Waiting> waiting;
@@ -65,7 +65,7 @@ private:
             square += away * away;
             largest = std::max(largest, away);
         }
-        // Squares may overflow or underflow; then use the largest coordinate. The factor covers the rounding of the root.
+        // If the square overflows or underflows, use the largest coordinate instead. The factor covers the rounding of the root.
         const bool fits = square > 0x1p-900 && square < 0x1p900;
         return {node, fits ? std::sqrt(square) * (1 - 0x1p-50) : largest * (1 - 0x1p-50)};
     }

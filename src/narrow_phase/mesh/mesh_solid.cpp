@@ -25,7 +25,7 @@ std::vector<Point3d> corners_of(const MeshTree& tree) {
     return corners;
 }
 
-/// The largest difference of coordinates.
+/// Returns the largest extent of the corners along an axis.
 double extent_of(const std::vector<Point3d>& corners) {
     double extent = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -48,8 +48,8 @@ double volume_of(const MeshTree& tree) {
     return sum;
 }
 
-/// Returns how far corners are above the planes of triangles, at most; nothing if that is more than `most`. `sense`: -1 if the
-/// triangles face inward. Triangles that are almost degenerate have no reliable plane and are left out.
+/// Returns the largest height of a corner above the plane of a triangle; nothing if it exceeds `most`. `sense`: -1 if the triangles face
+/// inward, otherwise 1. Ignores triangles that are almost degenerate, because their planes are not reliable.
 std::optional<double> height_above(const MeshTree& tree, const std::vector<Point3d>& corners, double sense,
                                    double most) {
     double highest = 0;
@@ -76,7 +76,7 @@ std::optional<double> height_above(const MeshTree& tree, const std::vector<Point
 
 void set_convex_solid(MeshTree& tree) {
     constexpr std::size_t max_triangles = 400;
-    constexpr double max_error = 0x1p-20;  // of the size: rounding of coordinates to float32, and of angles in files
+    constexpr double max_error = 0x1p-20;  // relative to the size; covers rounded coordinates and angles in files
     const bool one_part = tree.parts.corners.size() == 1 && tree.parts.sides.front() == MeshParts::Side::oriented;
     if (!one_part || tree.triangles.size() > max_triangles) return;
     std::vector<Point3d> corners = corners_of(tree);

@@ -24,7 +24,7 @@ namespace octopair {
 
 namespace {
 
-/// Largest number of contact points, and about of points of a hull, between which middles are tested.
+/// Maximum number of contact points, and about the maximum number of hull points, whose middles are tested as samples.
 constexpr std::size_t most_samples = 16;
 
 /// Returns a point deep inside the core: the mean of its points, or the origin of its coordinates.
@@ -52,7 +52,7 @@ std::vector<Point3d> places_of(const BoxedSolid& solid) {
     return places;
 }
 
-/// Returns the depth of the deepest of some points of the core in the mesh.
+/// Returns the depth in the mesh of the deepest of `places`, which are points of the core. `radius`: radius around the core.
 double deepest_in_mesh(const PosedMesh& mesh, double radius, const std::vector<Point3d>& places) {
     SurfaceProbe probe(mesh);
     double deepest = 0;
@@ -76,8 +76,8 @@ std::vector<Point3d> some_contact_points(const PosedMesh& mesh, const BoxedSolid
     return points;
 }
 
-/// Returns the middles between some points of a hull: its own, and those of contacts. A flat hull has no interior whose points
-/// could be deep in triangles, so it may pass through a mesh while its own points are outside.
+/// Returns the middles between each two of some points: `points`, which are contact points, and some points of the hull. A flat hull may
+/// pass through a mesh while all its own points are outside. Then only points between them are inside.
 std::vector<Point3d> middles_of(const BoxedSolid& solid, std::vector<Point3d> points) {
     const std::vector<Point3d>& own = solid.solid.points;
     for (std::size_t i = 0; i < own.size(); i += own.size() / most_samples + 1) {
@@ -101,7 +101,7 @@ double deepest_in_solid(const PosedMesh& mesh, const BoxedSolid& solid) {
     };
     for (std::size_t i = 0; i < mesh.tree.triangles.size(); i += step) {
         const Triangle3d triangle = mesh.tree.world_triangle(mesh.pose, std::uint32_t(i));
-        test_place(triangle[0]);  // other corners are first corners of neighbours
+        test_place(triangle[0]);  // the other corners are mostly first corners of other triangles
         test_place(middle_of(triangle));
     }
     return deepest;
@@ -155,8 +155,8 @@ void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, co
         ++count;
         return !request.stop.stop_requested();
     });
-    if (request.stop.stop_requested()) return;  // the count is not that of all triangles
-    // A solid that errs says how deep, but not whether.
+    if (request.stop.stop_requested()) return;  // `count` and the contacts are incomplete
+    // First uses only an exact solid: a solid with errors may tell how deep the objects meet, but not whether their interiors meet.
     set_depth_of_mesh_and_solid(mesh, solid, 0, finding);
     if (finding.depth_kind == DepthKind::at_least) finding.depth = std::max(finding.depth, deepest);
     const bool hull = solid.solid.core == ConvexSolid::Core::points && solid.solid.radius == 0;

@@ -71,7 +71,7 @@ struct alignas(32) LaneBox {
     }
     float low(int axis) const { return lanes[axis]; }
     float extent(int axis) const { return -lanes[axis + 4] - lanes[axis]; }
-    /// Half the surface area, to which the surface area heuristic takes the probability of a hit to be proportional.
+    /// Returns half the surface area. The surface area heuristic takes the probability of a hit to be proportional to the area.
     float area() const {
         const float x = extent(0), y = extent(1), z = extent(2);
         return x < 0 ? 0 : x * y + y * z + z * x;
@@ -187,7 +187,7 @@ private:
         }
         const float low = open.centres.low(axis), scale = bins / open.centres.extent(axis);
         std::size_t middle = 0;
-        // Beyond this depth, halving keeps the tree within max_depth. Equal centres are halved too.
+        // Bins are not used near max_depth, or if all centres are equal. The items are then halved by count, which bounds the depth.
         if (open.depth + std::bit_width(items.size()) < MeshTree::max_depth && std::isfinite(scale)) {
             const auto bin_of = [&](const Item& item) {
                 return std::min(int((item.doubled_centre(axis) - low) * scale), bins - 1);
@@ -247,7 +247,8 @@ private:
         return best;
     }
 
-    /// Sets the boxes of all nodes in float64, from the corners up. Children have greater numbers than their parents.
+    /// Sets the boxes of all nodes, computed in float64 from the corners. Visits nodes from last to first, because children have
+    /// greater numbers than their parents.
     void set_boxes() {
         std::vector<Bounds> bounds(tree_.nodes.size());
         for (std::size_t i = tree_.nodes.size(); i-- > 0;) {

@@ -13,7 +13,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Walks with a test: test.apart(a, b) is true if the boxes of two nodes are farther apart than the walk's reach.
+/// Continues the walk. test.apart(a, b) is true if the boxes of two nodes are farther apart than the walk's reach; the walk skips them.
 template <typename Test>
 unsigned walk_with(const Test& test, MeshWalk& walk, std::span<NodePair> leaves) {
     unsigned found = 0;

@@ -41,7 +41,7 @@ std::array<std::array<double, 3>, 3> inverse_of(const std::array<std::array<doub
     return inverse;
 }
 
-/// Returns an upper bound on the terms, summed by absolute value, of the world coordinates of the boxes' contents.
+/// A world coordinate of a place in the boxes is a sum of terms. Returns an upper bound on the sum of their absolute values.
 double reach_in_world(const PosedBoxes& boxes) {
     double largest = 0;
     for (int row = 0; row < 3; ++row) {
@@ -106,7 +106,7 @@ std::optional<Separation::OwnAxes> Separation::axes_of(const PosedBoxes& own, co
             to_own[i][j] = undo[i][0] * others[0][j] + undo[i][1] * others[1][j] + undo[i][2] * others[2][j];
         }
         axes.offset.at[i] = float(undo[i][0] * way[0] + undo[i][1] * way[1] + undo[i][2] * way[2]);
-        // A vector of length 1 in the world has at most the row's length along this axis.
+        // A world vector of length 1 extends along this axis by at most the length of this row of the inverse.
         const double row = std::sqrt(undo[i][0] * undo[i][0] + undo[i][1] * undo[i][1] + undo[i][2] * undo[i][2]);
         axes.scale.at[i] = float((1 - 0x1p-20) / row);
     }

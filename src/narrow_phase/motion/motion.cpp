@@ -73,7 +73,7 @@ double Motion::speed(double reach) const {
 }
 
 double Motion::sagitta(double reach, double step) const {
-    // A chord of a curve errs by at most step^2 / 8 times the bound of the curve's second derivative.
+    // Between its ends, a curve is at most step^2 / 8 * (bound of its second derivative) away from its chord.
     return angle_ * (angle_ * stretch_ + 2 * change_) * reach * step * step / 8 * (1 + 1e-12);
 }
 

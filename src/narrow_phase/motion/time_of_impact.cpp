@@ -24,14 +24,14 @@ struct RelativeMotion {
     /// Upper bound on the relative speed of two points.
     double max_speed() const { return vector::length(displacement) + turning_speed; }
 
-    /// Returns the time in which `gap - reach` shrinks at `speed` to `remaining_gap` or to half of itself, whichever takes
-    /// longer; 0 if the gap is at most `reach`.
+    /// Returns the longer of two times: until `gap - reach`, which shrinks at `speed`, becomes `remaining_gap`, and until it becomes
+    /// half of itself. Returns 0 if the gap is at most `reach`.
     double time_for(double gap, double speed) const {
         const double left = gap - reach;
         return left > 0 ? std::max(left - remaining_gap, left / 2) * (1 - 1e-9) / speed : 0;
     }
-    /// Returns the same time for the gap between two planes perpendicular to `direction`, which has length 1 and points from
-    /// a to b.
+    /// Returns time_for() the gap between two planes that separate the objects. The planes are perpendicular to `direction`, which
+    /// has length 1 and points from a to b.
     double time_across(double gap, const Point3d& direction) const {
         return time_for(gap, (std::max(0.0, vector::dot(displacement, direction)) + turning_speed) * (1 + 1e-9));
     }
@@ -50,8 +50,8 @@ RelativeMotion reversed(const RelativeMotion& motion) {
     return other;
 }
 
-/// Returns the safe time of two convex objects. `nearest` holds one point of each; the planes are perpendicular to the line
-/// between these points.
+/// Returns the time in which two separating planes cannot meet (safe_time()). `nearest`: a point of each object; the planes are
+/// perpendicular to the line between these points.
 double time_of_convex(const PosedConvex& a, const PosedConvex& b, const RelativeMotion& motion,
                       const std::array<Point3d, 2>& nearest) {
     const Point3d way = vector::minus(nearest[1], nearest[0]);
@@ -62,7 +62,7 @@ double time_of_convex(const PosedConvex& a, const PosedConvex& b, const Relative
     return motion.time_across(span_across(plane, b).low - span_across(plane, a).high, direction);
 }
 
-/// The smallest safe time over many pairs of convex objects, at most `most`.
+/// The smallest safe time (safe_time()) over many pairs of convex objects, at most `most`.
 class LeastTime {
 public:
     LeastTime(const RelativeMotion& motion, double most) : motion_(motion), least_(most) {}
@@ -120,13 +120,13 @@ double time_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, co
     return time.least();
 }
 
-/// Returns the safe time of an object a, with the given span, and the plane b. The plane itself separates the two.
+/// Returns the safe time (safe_time()) of an object a, which covers `span`, and the plane b. The plane itself is the separating plane.
 double time_to_plane(const PlaneSpan& span, const PosedPlane& plane, const RelativeMotion& motion) {
     const Point3d down = vector::times(plane.normal, -1);
     return std::max(motion.time_across(span.low, down), motion.time_across(-span.high, plane.normal));
 }
 
-/// Requires: the kind of a is not after the kind of b.
+/// Returns safe_time() of a pair. Requires: the kind of a is not after the kind of b (pair_kinds.hpp).
 double time_in_order(const ObjectsApart& pair, const RelativeMotion& motion, double most) {
     const auto& [a, b, gap] = pair;
     const ObjectKind kind_a = kind_of(a), kind_b = kind_of(b);
