@@ -170,7 +170,7 @@ struct TwoSolids {
         finding.depth = convex_contact(a, b).depth;
         finding.depth_kind = DepthKind::least;
     }
-    // The depth is the least, so these are not needed.
+    // Never called: the depth is always the least, so object_pair.cpp tries no directions.
     static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
     static double overlap_along(const Point3d&) { return 0; }
 };
@@ -222,7 +222,7 @@ struct SolidAndPlane {
         set_class_by_depth(rounding, finding);
     }
     static void set_contained_depth(const std::stop_token&, Finding&) {}
-    // The depth is the least, so these are not needed.
+    // Never called: the depth is always the least, so object_pair.cpp tries no directions.
     static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
     static double overlap_along(const Point3d&) { return 0; }
 
@@ -250,7 +250,7 @@ struct MeshAndPlane {
         set_class_by_depth(rounding, finding);
     }
     static void set_contained_depth(const std::stop_token&, Finding&) {}
-    // The depth is the least, so these are not needed.
+    // Never called: the depth is always the least, so object_pair.cpp tries no directions.
     static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
     static double overlap_along(const Point3d&) { return 0; }
 };

@@ -18,8 +18,8 @@ namespace {
 
 unsigned thread_count(unsigned requested) { return requested > 0 ? requested : available_cores(); }
 
-/// Threads that no team uses, by their number, for later teams. oneTBB 2021.8 never returns about 7 KB of an arena that its threads have
-/// entered, so a program that makes an engine for each call would grow without end.
+/// Keeps TbbThreads that no team uses any more, by their number of threads, for later teams. oneTBB 2021.8 never frees about 7 KB of each
+/// arena that threads have entered. So without reuse, a program that makes an engine for each call would need more and more memory.
 ///
 /// Never destroyed: oneTBB may have ended before the destructors of static objects run.
 class IdleThreads {

@@ -44,8 +44,7 @@ public:
 
 private:
     static constexpr std::size_t first = 64;
-    static constexpr double aim =
-        2e-4;  // intended seconds for a block; far more than passing it to another thread takes
+    static constexpr double aim = 2e-4;  // intended seconds for a block; passing it to a thread takes far less
 
     std::size_t least_, most_, pairs_;
     double seconds_ = -1;  // moving average of the time for a pair; negative: not measured yet

@@ -1,6 +1,7 @@
-// RowPass: visits rows of the second algorithm on the threads of a team. A visit may report a fault of the checked result.
+// RowPass: runs the second algorithm (row_search.hpp) row by row on the threads of a team, and visits each row. A row is all pairs
+// (a, b) of one object a. A visit may report a fault of the checked result.
 //
-// Result     the difference at the lowest row where a visit reported one, so the result does not depend on threads.
+// Result     the fault of the lowest row in which a visit reported a fault, so the result does not depend on threads.
 #pragma once
 
 #include <cstdint>

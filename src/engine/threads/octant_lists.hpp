@@ -15,7 +15,8 @@ namespace detail {
 
 struct OctantLists {
     std::vector<OctantSummary> octants;
-    std::vector<std::uint64_t> begins;   ///< by octant: position of its first object in `objects`; then their number
+    std::vector<std::uint64_t>
+        begins;  ///< by octant: position of its first object in `objects`; at the end, their number
     std::vector<std::uint32_t> objects;  ///< objects of all octants
     std::vector<std::uint32_t> homes;    ///< by object: its home, or Octants::no_octant
     Box3d space;

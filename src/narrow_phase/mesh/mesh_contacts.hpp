@@ -19,7 +19,7 @@ struct ContactRequest {
     const std::stop_token& stop;
     double tolerance = 0;            ///< objects that a translation of at most this length separates are touching
     double duplicate_tolerance = 0;  ///< largest distance of the corners of duplicates
-    double max_error = 0;            ///< of a depth that counts as the least (is_solid())
+    double max_error = 0;            ///< maximum error of a least depth (is_solid())
 };
 
 /// Sets class, depth and contacts of `finding`. Requires: the surfaces of the meshes meet.
@@ -47,7 +47,7 @@ void set_depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const ContactRe
 struct MeshSolidRequest {
     std::uint32_t max_contacts;   ///< maximum number of contacts in the result
     double touching_depth;        ///< a contact that is at most this deep only touches
-    double max_error;             ///< of a depth that counts as the least (is_solid())
+    double max_error;             ///< maximum error of a least depth (is_solid())
     const std::stop_token& stop;  ///< after a stop request the search ends soon; its result is then unspecified
 };
 /// Sets depth and contacts of `finding`; object a is the mesh.

@@ -22,7 +22,7 @@ struct EncodedBatch : CrosserBatch {
         lists;  ///< home octant of each box; BatchEncoder::no_list if the box is too large for a leaf
 };
 
-/// Crossers [begin, begin + count) of a batch.
+/// The crossers [begin, begin + count) of a batch. Crossers are boxes that reach beyond the leaf that they begin in (box_locator.hpp).
 struct CrosserRange {
     std::size_t begin, count;
 };
@@ -58,7 +58,7 @@ public:
     BoxLocator locator;
     std::array<unsigned, 3> axes;  ///< coordinate axis of each axis of the sweep
     std::uint32_t no_list;
-    /// By octant: OctantCells::deep_origin() of deep octants; empty if there are none.
+    /// By octant: OctantCells::deep_origin() of octants deeper than OctantCells::max_fine_level. Empty if there are none.
     std::vector<std::array<float, 4>> deep_origins;
 
 private:

@@ -55,7 +55,8 @@ std::optional<std::array<Real, 3>> solve(std::array<std::array<Real, 4>, 3> rows
     return solution;
 }
 
-/// Returns the point nearest to the origin of the plane, line or point through all corners, if it lies between the corners.
+/// Takes the plane, line or point through all corners. Returns its point that is nearest to the origin; nothing if this point is not
+/// between the corners.
 std::optional<Weighted> nearest_inside(const std::vector<Difference>& corners) {
     const Vector base = corners.front().point();
     std::array<std::array<Real, 4>, 3> rows{};
@@ -105,10 +106,10 @@ Difference farthest_difference(const ConvexBody& first, const ConvexBody& second
 struct Face {
     std::array<Vector, 3> corners;
     Vector normal;  ///< unit vector outward
-    Real distance;  ///< of its plane from the origin, >= 0
+    Real distance;  ///< distance of its plane from the origin, > 0
 };
 
-/// Returns nothing if rounding hides on which side of the face the origin is.
+/// Makes the face a, b, c. Returns nothing if the origin is not certainly behind the face.
 std::optional<Face> make_face(const Vector& a, const Vector& b, const Vector& c) {
     const Vector normal = cross(b - a, c - a);
     const Real size = length(normal);
@@ -121,7 +122,7 @@ bool is_equal(const Vector& a, const Vector& b) { return a.x == b.x && a.y == b.
 
 using Corners = std::array<Vector, 3>;
 
-/// Returns the triangles of a closed surface as faces that the origin is behind; none if the origin is not certainly inside.
+/// Turns the triangles of a closed surface so that the origin is behind each of them. Returns none if it is not certainly inside.
 std::vector<Face> faces_of(const std::vector<Corners>& triangles) {
     std::vector<Face> faces;
     for (const auto& [a, b, c] : triangles) {
@@ -130,7 +131,7 @@ std::vector<Face> faces_of(const std::vector<Corners>& triangles) {
         if (!face) return {};
         faces.push_back(*face);
     }
-    // If the origin is outside, two neighbours are turned differently, and pass along their edge in the same direction.
+    // If the origin is outside, two neighbours have different orientations. Then both have their common edge in the same direction.
     std::vector<std::array<Vector, 2>> edges;
     for (const Face& face : faces) {
         for (std::size_t i = 0; i < 3; ++i) edges.push_back({face.corners[i], face.corners[(i + 1) % 3]});
@@ -159,8 +160,8 @@ Vector perpendicular_to(const Vector& direction) {
     return across * (1 / length(across));
 }
 
-/// Returns a polytope within the difference of the bodies, around the origin; none if there is none for certain. `simplex`: points of the
-/// difference with the origin in their hull. Bodies with symmetries yield flat ones.
+/// Returns a polytope within the difference of the bodies that has the origin inside; no faces if no such polytope is found. `simplex`:
+/// points of the difference whose hull contains the origin. It may be flat, for example for symmetric bodies.
 std::vector<Face> polytope_around(const ConvexBody& first, const ConvexBody& second,
                                   const std::vector<Difference>& simplex) {
     const auto farthest = [&](const Vector& direction) {
@@ -211,7 +212,7 @@ struct Goal {
 /// Bounds the distance. `simplex` gets the points of the difference whose hull is nearest to the origin, or contains it.
 DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second, const Goal& goal,
                               std::vector<Difference>& simplex) {
-    // Not along an axis, because symmetric bodies would yield flat simplices.
+    // The first direction is not along an axis, because symmetric bodies would then yield flat simplices.
     Weighted nearest{{farthest_difference(first, second, {-0.48L, 0.6L, 0.64L})}, {1}};
     DistanceBounds bounds;
     bounds.upper = std::numeric_limits<Real>::infinity();
@@ -219,7 +220,7 @@ DistanceBounds bound_distance(const ConvexBody& first, const ConvexBody& second,
         const std::array<Vector, 2> points = {nearest.mean(&Difference::first), nearest.mean(&Difference::second)};
         const Vector v = points[0] - points[1];
         const Real distance = length(v);
-        if (distance >= bounds.upper) break;  // rounding ends the progress
+        if (distance >= bounds.upper) break;  // rounding prevents further progress
         bounds.upper = distance;
         bounds.points = points;
         if (distance <= goal.accuracy) break;

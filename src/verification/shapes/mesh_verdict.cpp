@@ -77,7 +77,7 @@ bool cross_each_other(const Triangle& a, const Triangle& b) {
     return false;
 }
 
-/// One of the two objects.
+/// One of the two objects of a pair: a mesh with its triangles in the world, or a convex solid.
 struct Side {
     explicit Side(const JudgedObject& judged) : object(judged), triangles(triangles_of(judged)) {
         for (const Triangle& triangle : triangles) boxes.push_back(box_of(triangle));
@@ -94,9 +94,9 @@ struct Side {
             points.push_back(triangles[triangle][0]);
         return points;
     }
-    /// Returns where the other object is. Requires: the surfaces do not meet.
+    /// Returns whether the parts of `other` are inside or outside this object. Requires: the surfaces do not meet.
     Enclosure enclosure_of(const Side& other) const {
-        // A triangle within the solid would meet it.
+        // `other` is a mesh. A triangle of it inside this solid would meet the solid, so all parts are outside.
         if (is_solid()) return {.is_known = true, .any_outside = true, .all_outside = true};
         if (!is_closed(local_triangles_of(object))) return {};
         return enclosure_in(triangles, other.points_of_parts());
@@ -115,7 +115,7 @@ struct Side {
 
 /// The part of the surface of an object that is near another object.
 struct Surface {
-    /// Takes the part that is at most `reach` away from the boxes of `other`.
+    /// Takes the solid, or the triangles whose boxes are, on each axis, at most `reach` away from the common box of `other`.
     Surface(const Side& side, const Side& other, double reach) {
         if (side.is_solid()) {
             bodies.push_back(side.solid());
@@ -136,7 +136,7 @@ struct Surface {
         }
     }
 
-    std::vector<Triangle> triangles;  ///< none of a solid
+    std::vector<Triangle> triangles;  ///< empty for a solid
     std::vector<ConvexBody> bodies;   ///< the triangles, or the solid
     std::vector<Box3d> boxes;         ///< of the bodies
 };
@@ -163,7 +163,7 @@ public:
     }
 
 private:
-    /// Returns what no certificate judges; null: nothing is left out.
+    /// Returns a text for users that names the properties of the features that no certificate judges; null: all were judged.
     const char* features_not_checked() const {
         const bool has_features = decision_.rules.features && (decision_.says_meet() || may_be_shallow());
         return has_features ? "depths and contacts of meshes" : nullptr;
@@ -174,7 +174,7 @@ private:
     /// Bounds the distance of the surfaces; the lower bound is at most `reach`.
     SurfaceBounds bound_surfaces(Real reach) const {
         SurfaceBounds bounds;
-        bounds.lower = reach;  // of all triangles that are not compared
+        bounds.lower = reach;  // all triangles that are not compared are at least this far apart
         const Surface a(first_, second_, double(reach)), b(second_, first_, double(reach));
         if (a.bodies.empty() || b.bodies.empty()) return bounds;
         Team alone(1);
@@ -249,7 +249,8 @@ private:
         return is_touching() && !has_solid ? "it is touching, but two triangles pass through each other" : "";
     }
 
-    /// Judges a mesh and a solid that meet, of which one is said to contain the other: then it is the solid.
+    /// Judges a mesh and a solid that meet and whose class is `contained`. A mesh cannot contain a solid that its surface meets, so
+    /// the mesh must be inside the solid.
     std::string judge_mesh_in_solid() const {
         const Side &mesh = first_.is_solid() ? second_ : first_, &solid = first_.is_solid() ? first_ : second_;
         const ConvexBody outer = solid.solid();
@@ -269,7 +270,7 @@ private:
     const std::stop_token& stop_;
 };
 
-/// Returns the triangles of a mesh with moved(vertex) in place of each vertex; none if the object is not a mesh.
+/// Returns the triangles of a mesh, each vertex replaced by moved(vertex). Returns no triangles if the object is not a mesh.
 template <typename Move>
 std::vector<Triangle> moved_triangles(const JudgedObject& object, Move&& moved) {
     std::vector<Triangle> triangles;
@@ -295,7 +296,7 @@ Real least_distance(const Point3d& point, const std::vector<Triangle>& triangles
     Real least = std::numeric_limits<Real>::infinity();
     for (const Triangle& triangle : triangles) {
         const Box3d box = box_of(triangle);
-        Real apart = 0;  // from the box, along an axis
+        Real apart = 0;  // largest distance of the point from the box along an axis
         for (const auto& [at, axis] : {std::pair(position.x, 0), {position.y, 1}, {position.z, 2}})
             apart = std::max({apart, box.min[axis] - at, at - box.max[axis]});
         if (apart > limit) {

@@ -12,7 +12,7 @@ namespace octopair::certificate {
 
 namespace {
 
-/// Heights of an object above a plane.
+/// The lowest and the highest point of an object relative to a plane.
 struct Extent {
     Real lowest = std::numeric_limits<Real>::infinity(), highest = -std::numeric_limits<Real>::infinity();
 

@@ -17,7 +17,8 @@ using namespace certificate;
 bool is_mesh(const JudgedObject& object) { return std::holds_alternative<shape::Mesh>(object.geometry.shape()); }
 const shape::Plane* plane_of(const JudgedObject& object) { return std::get_if<shape::Plane>(&object.geometry.shape()); }
 
-/// Returns how much the columns of a pose differ from those of a rotation. 0 for shapes that a pose may distort.
+/// Returns how much the products of the columns of a pose differ from those of a rotation. Returns 0 for hulls and meshes, which a pose
+/// may distort.
 Real distortion(const JudgedObject& object) {
     if (std::holds_alternative<shape::ConvexHull>(object.geometry.shape()) || is_mesh(object)) return 0;
     Real most = 0;
@@ -44,7 +45,7 @@ Vector translation_of(const JudgedObject& object) {
     return {object.pose.rows[0][3], object.pose.rows[1][3], object.pose.rows[2][3]};
 }
 
-/// What the accuracy of the narrow phase depends on.
+/// The sizes that determine the accuracy of the narrow phase.
 struct Sizes {
     Real first, second;  ///< radii of the objects
     Real coordinate;     ///< largest absolute value of a coordinate

@@ -20,7 +20,7 @@ struct StageRules {
     std::optional<double> min_depth = {};  ///< pairs that are less deep were dropped
 };
 
-/// An object, borrowed.
+/// An object with its pose and padding. Borrows the shape and the pose.
 struct JudgedObject {
     const Geometry& geometry;
     const Pose& pose;

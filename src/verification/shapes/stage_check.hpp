@@ -24,7 +24,7 @@ namespace octopair {
 class StageCheck {
 public:
     struct Setup {
-        SearchedObjects boxes;  ///< of the call; borrowed
+        SearchedObjects boxes;  ///< boxes and margin of the call; borrowed
         const ShapedObjects& first;
         const ShapedObjects* second = nullptr;  ///< the other set of a join; null: pairs within `first`
         StageRules rules;
@@ -33,7 +33,7 @@ public:
     };
     struct Result {
         bool judged = true;                 ///< false: no decision was judged, because objects move
-        std::set<std::string> not_checked;  ///< for users
+        std::set<std::string> not_checked;  ///< texts for users: what no certificate judged
     };
     explicit StageCheck(const Setup& setup) : setup_(setup) {}
 

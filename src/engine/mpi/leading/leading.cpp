@@ -56,8 +56,8 @@ Summary RankGroup::find(const Assignment& assignment, const detail::Request* req
     return search_.run({slices_.slice(0), second, options}, output, control, Recipients::first);
 }
 
-/// Keeps the first exception that the caller's functions throw. Ranks exchange only its message, but the caller must get the
-/// original exception.
+/// Calls the caller's functions, and keeps the first exception that they throw. Ranks exchange only its message, but the caller of
+/// the engine must get the original exception.
 class Captured {
 public:
     template <typename... Arguments>
@@ -168,7 +168,7 @@ private:
     detail::JobQueue jobs_{*this};  // last member, so that it is destroyed first
 };
 
-/// A rank other than rank 0.
+/// Runs the part of a rank other than rank 0 in the calls of the engine.
 class Follower {
 public:
     Follower(MPI_Comm comm, const LeadingOptions& options) : group_(comm, options) {}

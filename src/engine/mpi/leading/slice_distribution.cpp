@@ -50,7 +50,7 @@ void SliceDistribution::make(const Assignment& assignment, const detail::Request
     }
 }
 
-/// `all`: the objects of the set on rank 0; null on the other ranks.
+/// Collective. Sets this rank's slice of a set. `all`: all objects of the set on rank 0; null on the other ranks.
 template <typename Real>
 void SliceDistribution::distribute_set(unsigned set, const Objects* all, Buffer<Box<Real>>& boxes) {
     const std::uint64_t size = assignment_->sets[set].objects;
@@ -77,7 +77,8 @@ void SliceDistribution::distribute_set(unsigned set, const Objects* all, Buffer<
     }
 }
 
-/// Sends `all` in rounds. A round is a contiguous range of `all`, so it has parts of the slices of one or more ranks.
+/// Collective. Sends `all` from rank 0 in rounds. A round sends a contiguous range of `all`, with parts of the slices of one or more
+/// ranks.
 template <typename Item>
 void SliceDistribution::distribute(std::span<const Item> all, std::uint64_t size, std::span<Item> own) {
     const std::uint64_t step = tuning().ranks.round_bytes / sizeof(Item);

@@ -39,7 +39,7 @@ OwnSample own_sample(const JointCall& call, const BoxSource& own) {
 
 constexpr unsigned space_measures = 3 * SpaceSample::measures;
 
-/// Returns the rank that computes measure `number` of the space.
+/// Returns the rank that computes one of the nine measures that the space is fitted to (SpaceSample). `number`: of the measure.
 unsigned measurer(unsigned number, unsigned ranks) {
     return ranks < space_measures ? number % ranks : number * ranks / space_measures;
 }

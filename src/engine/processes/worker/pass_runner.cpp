@@ -113,7 +113,7 @@ PassRunner::~PassRunner() = default;
 /// Divides the steps that build the octree among the workers. The octree is in memory that all workers share.
 class PassRunner::BuildExecutor final : public Executor {
 public:
-    /// `built`: an earlier pass has run the steps.
+    /// `built`: true if an earlier pass has built the octree; for_each() then does nothing.
     BuildExecutor(WorkSharing& shares, unsigned width, bool built) : shares_(shares), width_(width), built_(built) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
