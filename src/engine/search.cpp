@@ -120,8 +120,8 @@ void Search::hand_out_held(Call& call, Receiver& receiver, double progress) {
     });
 }
 
-/// Streams ascending pairs that do not fit into the buffer. Counts the pairs of each object, then collects them in windows
-/// of as many objects as fit.
+/// Streams ascending pairs that do not fit into the buffer. Counts the pairs of each object. Then collects the pairs of one window of
+/// objects after another; a window has as many objects as have pairs that fit into the buffer.
 void Search::find_windows(Call& call, Receiver& receiver) {
     const std::uint64_t objects = call.source.size();
     std::vector<std::uint32_t> counts(objects, 0);

@@ -68,7 +68,7 @@ private:
 
     const std::vector<Point3d>& vertices_;
     double tolerance_;
-    std::vector<std::uint32_t> firsts_;  // by vertex: an earlier vertex that it is joined with, or itself
+    std::vector<std::uint32_t> firsts_;  // by vertex: an earlier vertex that it was joined with, or itself
     std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells_;
 };
 

@@ -10,14 +10,14 @@
 
 namespace octopair {
 
-/// For each set of lanes of a SIMD register, the numbers of its lanes. Used to move chosen lanes to the front. It replaces Highway's
-/// own table, which g++ 12 copies on each use.
+/// Table of the lanes in each set of lanes of a SIMD register. A kernel uses it to move the lanes of a set to the front of a register. It
+/// replaces Highway's own table, which g++ 12 copies on each use.
 struct LaneTable {
     static constexpr std::size_t lanes = 8;
-    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};  ///< by set, as bits: its lanes, ascending
-    std::array<std::array<std::uint8_t, lanes>, 1 << lanes>
-        rank{};                                    ///< by set: for each lane, the number of its lanes before
-    std::array<std::uint8_t, 1 << lanes> count{};  ///< by set: number of its lanes
+    // Arrays by set. A set is a bit mask of lanes.
+    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};    ///< lanes of the set, ascending
+    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> rank{};  ///< by lane: number of the set's lanes before
+    std::array<std::uint8_t, 1 << lanes> count{};                    ///< number of lanes of the set
 
     constexpr LaneTable() {
         for (std::size_t set = 0; set < of.size(); ++set) {

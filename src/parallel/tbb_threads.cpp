@@ -73,7 +73,7 @@ private:
 #endif
 };
 
-/// Stores the first exception of several tasks. Keeps exceptions of tasks apart from those of oneTBB itself.
+/// Stores the first exception of several tasks. So a caller can tell exceptions of tasks from exceptions of oneTBB itself.
 class FirstFailure {
 public:
     template <typename Body>

@@ -91,7 +91,7 @@ void ObjectTable::reserve(std::uint64_t more, bool with_padding, bool with_trait
     const bool padded = padded_ || with_padding, has_traits = with_traits_ || with_traits;
     if (padded) paddings_.reserve(all);
     if (has_traits) traits_.reserve(all);
-    // From here on nothing fails.
+    // The following statements cannot fail, so the table is either unchanged or complete.
     padded_ = padded;
     with_traits_ = has_traits;
     if (padded_) paddings_.resize(slots_.size(), 0);

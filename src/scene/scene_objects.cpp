@@ -164,7 +164,7 @@ void SceneObjects::move_to(std::span<const ObjectId> ids, std::span<const Box<Re
             note_move(index);
             is_changed_by_call_ = true;
         }
-        table_.set_box(index, boxes[i]);  // also if equal: 0 may become -0
+        table_.set_box(index, boxes[i]);  // also if the boxes are equal, because 0 may become -0
     }
 }
 

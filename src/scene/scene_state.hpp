@@ -86,7 +86,7 @@ private:
     unsigned refills_ = tuning().scene.max_refills;
     unsigned steps_with_few_ = 0;  // number of consecutive searches in which few searched boxes had changed
     EntryRounding rounding_;
-    SearchedStates states_;        // of linear_, octree_ and history_
+    SearchedStates states_;        // which states linear_, octree_ and history_ describe
     bool queried_ = false;         // a query has built octree_ since the last full step, so its memory is kept
     double full_seconds_ = 0;      // time of the last full step
     double seconds_a_change_ = 0;  // estimated time of an incremental step for each changed object

@@ -240,7 +240,7 @@ bool Scene::State::find_changes(const std::stop_token& stop) {
     const ChangeSearch::Limits limits{begin + time_limit(full_seconds_),
                                       objects_.table().size() / 2 + tuning().scene.visits,
                                       history_.size() + tuning().scene.changed_pairs, stop};
-    states_.forget(SearchedStates::octree);  // until everything below has succeeded
+    states_.forget(SearchedStates::octree);  // the octree is valid again only when all of the following has succeeded
     try {
         search_.run({objects_.table(), objects_.log(), rounding_, margin_}, octree_, found_, limits);
     } catch (const ChangeSearch::LimitReached&) {

@@ -81,7 +81,7 @@ private:
     }
 
     /// Returns the coordinate that separates the boxes of a run best: the one with the largest interquartile range in a sample,
-    /// in units of the mean extent of all boxes on its axis. Among equal coordinates, `depth` decides.
+    /// in units of the mean extent of all boxes on its axis. Among equally good coordinates, the choice changes with `depth`.
     unsigned best_coordinate(const Place& place, unsigned depth) const {
         const std::size_t begin = tree_.begin_of(place), count = tree_.end_of(place) - begin;
         std::array<double, samples> sample;

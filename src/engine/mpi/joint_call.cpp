@@ -94,8 +94,8 @@ void check_parameters_agree(const std::vector<CallParameters>& all) {
     }
 }
 
-/// Collective: the first message of a call. Returns the parameters of all ranks. Throws: the same Error on all ranks if one gathers and
-/// another searches.
+/// Collective. Exchanges the first message of a call. Returns the parameters of all ranks. Throws: the same Error on all ranks if one rank
+/// gathers and another rank searches.
 std::vector<CallParameters> exchange_parameters(Communicator& comm, const CallParameters& own) {
     std::vector<CallParameters> all = comm.all_gather(own);
     const auto gathers = [](const CallParameters& one) { return one.kind == CallKind::gather; };
@@ -105,7 +105,7 @@ std::vector<CallParameters> exchange_parameters(Communicator& comm, const CallPa
     return all;
 }
 
-/// Sets the origin of rounding to the median of a sample of corners, the same sample that the local engine takes.
+/// Sets the origin of rounding to the median of a sample of corners. The local engine takes the same sample for the same objects.
 void choose_origin(Communicator& comm, const detail::Request& request, JointCall& call) {
     const BoxSource own(request.first, request.second, call.form);
     const OriginSample sample{std::size_t(call.objects())};

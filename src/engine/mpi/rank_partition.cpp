@@ -33,8 +33,8 @@ RankShare RankSearch::plan_and_route(RankCall& rank_call, const BoxSource& own) 
     return grow(rank_call, *planning, owners);
 }
 
-/// Sends objects to the ranks whose octants they touch, and receives those for this rank. Returns the owners of the octants that
-/// all ranks store.
+/// Sends each object to the ranks whose octants it touches, and receives the objects for this rank. Returns the owners of the octants of
+/// the shared top.
 OctantOwners RankSearch::route(RankCall& rank_call, const BoxSource& own, const OctreePlanning& planning) {
     const OctreeLayout& shared = planning.shared();
     TeamExecutor threads(passes_.threads());
@@ -74,7 +74,7 @@ RankShare RankSearch::grow(RankCall& rank_call, OctreePlanning& planning, const 
     return share;
 }
 
-/// Sends the objects of each set to their owners, and receives those of this rank.
+/// Sends the objects of each set to their owners, and receives the objects that this rank owns.
 void RankSearch::exchange_objects(RankCall& rank_call, Executor& executor, const Routing& routing) {
     const CostMeter meter(comm_, costs_.pack);
     std::uint64_t incoming = 0;

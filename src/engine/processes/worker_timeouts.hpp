@@ -34,7 +34,7 @@ inline constexpr unsigned max_spins_for_pass = 4000;         ///< about 80 us: c
 namespace worker_failures {
 
 inline constexpr unsigned max_failed_starts = 3;           ///< consecutive, in one slot
-inline constexpr unsigned max_deaths_per_share = 3;        ///< deaths in the same share that fail the pass
+inline constexpr unsigned max_deaths_per_share = 3;        ///< as many deaths of workers in one share fail the pass
 inline constexpr unsigned max_deaths_between_shares = 10;  ///< consecutive, in one slot
 
 }  // namespace worker_failures

@@ -38,7 +38,7 @@ struct Worker {
         : pages(list, pages_left), found(plan.buckets()), sort(plan, pages) {}
 
     ListPages pages;
-    std::vector<PageString> found;  // by bucket
+    std::vector<PageString> found;  // the pairs of each bucket
     BucketSort sort;
 };
 

@@ -51,7 +51,7 @@ public:
         keep_needed();
     }
 
-    /// True if the nearest point is inside a tetrahedron: then it is the origin, up to rounding.
+    /// True if the nearest point is inside a tetrahedron of four vertices. The nearest point is then the origin, up to rounding.
     bool encloses() const { return count_ == 4; }
     const Point3d& nearest() const { return nearest_; }
     std::span<const Vertex> vertices() const { return {vertices_.data(), count_}; }

@@ -39,8 +39,8 @@ struct TouchingTriangles {
 bool interiors_meet(const PosedMesh& a, const PosedMesh& b, std::span<const TouchingTriangles> touching,
                     const std::stop_token& stop);
 
-/// Sets depth and depth_kind: the least separating translation of two convex meshes (MeshTree::solid); otherwise the depth of
-/// the deepest sample of either mesh inside the other, a lower bound, or 0 if no sample is inside.
+/// Sets depth and depth_kind. For two convex meshes (MeshTree::solid), the depth is the least separating translation. For other
+/// meshes it is a lower bound: the depth of the deepest sample of either mesh inside the other; 0 if no sample is inside.
 /// Requires: the interiors of the meshes meet.
 void set_depth_of_meshes(const PosedMesh& a, const PosedMesh& b, const ContactRequest& request, Finding& finding);
 
@@ -54,8 +54,8 @@ struct MeshSolidRequest {
 void find_mesh_solid_contacts(const PosedMesh& mesh, const BoxedSolid& solid, const MeshSolidRequest& request,
                               Finding& finding);
 
-/// Sets depth and depth_kind: the least separating translation if is_solid(mesh, max_error); otherwise the depth of the deepest
-/// sample of either object inside the other, a lower bound, or 0 if no sample is inside.
+/// Sets depth and depth_kind. If is_solid(mesh, max_error), the depth is the least separating translation. Otherwise it is a lower
+/// bound: the depth of the deepest sample of either object inside the other; 0 if no sample is inside.
 void set_depth_of_mesh_and_solid(const PosedMesh& mesh, const BoxedSolid& solid, double max_error, Finding& finding);
 
 }  // namespace octopair

@@ -42,7 +42,7 @@ std::uint64_t hash_of(const Point3d& place) {
     return hash;
 }
 
-/// Returns for each vertex the first vertex at the same place. Sorts the vertices by hash, and those of equal hashes by place.
+/// Returns for each vertex the first vertex at the same place. Sorts the vertices by hash, and vertices with equal hashes by place.
 std::vector<std::uint32_t> merge_places(const std::vector<Point3d>& vertices) {
     const auto bits = unsigned(std::bit_width(vertices.size()));
     const auto bucket_of = [&](const Point3d& vertex) { return std::size_t(hash_of(vertex) >> (64 - bits)); };

@@ -9,7 +9,7 @@ namespace octopair {
 
 namespace {
 
-constexpr float small_numbers = 254;  // of the 256 numbers of 8 bits: 0 means before the unit, one more covers rounding
+constexpr float small_numbers = 254;  // a SmallBox has 8-bit numbers: 0 means before the unit, 255 covers rounding
 
 }  // namespace
 

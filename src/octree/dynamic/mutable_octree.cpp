@@ -164,7 +164,7 @@ void MutableOctree::add_range(const LinearOctree& octree, OctantIndex begin, Oct
 
     std::vector<UnitEntry> unit_entries;
     unit_entries.reserve(entries.size() + entries.size() / 2);
-    std::vector<std::uint32_t> sizes;  // by unit of the range
+    std::vector<std::uint32_t> sizes;  // number of entries of each unit of the range
     std::size_t first = 0;
     for (OctantIndex octant = begin; octant < end; ++octant) {
         const std::size_t count = octree.entry_count(octant);

@@ -33,7 +33,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::RebindToFloat<Words>;
 using FloatLanes = hn::Vec<Floats>;
 
-/// Loads four numbers of each box of a register's lanes. `numbers`: those of the first box; `stride`: from box to box.
+/// Loads four numbers of each box of a register's lanes. `numbers`: the four numbers of the first box; `stride`: floats from box to box.
 HWY_INLINE void load_numbers(const float* numbers, std::size_t stride, Lanes (&registers)[4]) {
     // A float has the same bits as the word that is loaded here.
     const auto* const words = reinterpret_cast<const std::uint32_t*>(numbers);
@@ -243,7 +243,7 @@ public:
         if constexpr (std::is_same_v<Item, Box3f>) valid_ = hn::And(valid_, valid_boxes(box));
         return box;
     }
-    /// Loads the numbers of the items from `i` on; 0 in lanes without an item. `numbers`: those of all items.
+    /// Loads numbers[i] and the numbers after it, one for each lane; 0 in lanes without an item. `numbers`: one number for each item.
     HWY_INLINE Lanes numbers(const std::uint32_t* numbers, std::size_t i) const {
         const Words d;
         const std::size_t left = items_.size() - i;

@@ -38,7 +38,7 @@ struct OCTOPAIR_PRIVATE_EXPORT BuildMemory {
     /// Two lists for each octant: list i has the home entries of octant i, and list `octants` + i has its ghosts. A home entry is the
     /// entry in the leaf that the box begins in. All other entries are ghosts.
     ChunkLists lists;
-    Buffer<std::uint64_t> begins;  // by octant: number of entries in the octants before, within the octant's range
+    Buffer<std::uint64_t> begins;  // by octant: number of entries in earlier octants of the same range
     Buffer<std::uint64_t> totals;  // by range of octants: number of entries
     Buffer<std::uint8_t> valid;    // by block: 1 if all its objects are valid boxes
     /// Time of the steps in a sample of the batches.

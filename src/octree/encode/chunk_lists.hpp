@@ -111,7 +111,7 @@ private:
     CellEntry* entries_;
     std::uint32_t* next_;
     std::uint32_t in_chunk_;
-    std::vector<std::uint32_t> heads_, firsts_;  // by list: position behind the last entry; first chunk
+    std::vector<std::uint32_t> heads_, firsts_;  // by list: position after its last entry; its first chunk
     std::uint32_t chunks_ = 1;
     std::size_t committed_ = 0;  // chunks
 };

@@ -31,7 +31,7 @@ struct OCTOPAIR_PRIVATE_EXPORT OctantCube {
     /// Returns a bit mask of the children that `box` touches.
     /// Requires: `box` touches this octant.
     unsigned touched_below(const CellBox& box) const {
-        // By axis: the children in the lower half and those in the upper half.
+        // For each axis: bit mask of the children in the lower half, and bit mask of the children in the upper half.
         constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
         const std::uint32_t half = (cells_per_axis >> level) / 2;
         unsigned touched = 0xFF;

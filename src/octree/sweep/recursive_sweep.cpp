@@ -69,7 +69,7 @@ struct TileSweep {
     SweepKind kind;
     Orientation orientation;
 
-    /// Sweeps in shares of a few tiles of rows: these mostly reach the same tiles of columns.
+    /// Runs the sweep in shares. A share has a few adjacent tiles of rows, because these mostly reach the same tiles of columns.
     void run(Executor& executor) const {
         const std::size_t tiles = rows.size();
         const std::size_t share = std::clamp<std::size_t>(tiles / (shares_per_thread * executor.width()), 1, max_share);
@@ -119,7 +119,7 @@ struct OwnedJoin {
     Orientation orientation = {};
     unsigned depth = 0;                 // number of splits from the whole join to this join
     unsigned settled = 0;               // number of settled axes: on these, all rows and columns overlap
-    std::array<unsigned, 3> axes = {};  // in the order in which they are settled
+    std::array<unsigned, 3> axes = {};  // the axes, in the order in which the recursion settles them
 
     EntryList row_list() const { return row_entries.at(*rows); }
     EntryList column_list() const { return column_entries.at(*columns); }

@@ -11,7 +11,7 @@ namespace octopair::certificate {
 
 struct DistanceBounds {
     Real lower = 0, upper = 0;
-    std::array<Vector, 2> points = {};  ///< of the two bodies, `upper` apart
+    std::array<Vector, 2> points = {};  ///< a point of each body; their distance is `upper`
 };
 
 struct DepthBounds {

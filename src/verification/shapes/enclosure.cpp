@@ -52,7 +52,7 @@ bool is_closed(const std::vector<Triangle>& mesh) {
 
 std::vector<std::size_t> parts_of(const std::vector<Triangle>& mesh) {
     std::map<Vector, std::size_t, InOrder> numbers;
-    std::vector<std::size_t> triangles, parents;  // by corner: a triangle that has it, and a corner of the same part
+    std::vector<std::size_t> triangles, parents;  // by corner: a triangle that has it; a corner of its part, or itself
     std::size_t triangle = 0;
     const auto number_of = [&](const Vector& corner) {
         const auto [at, is_new] = numbers.emplace(corner, parents.size());

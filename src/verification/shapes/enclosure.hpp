@@ -16,10 +16,10 @@ struct Enclosure {
     bool all_outside = false;  ///< all parts are certainly outside
 };
 
-// The coordinates of the next two functions are those of the mesh before it is moved, because a motion rounds places: it may close a gap.
+// The next two functions take the mesh in its own coordinates, not in the world: a pose rounds coordinates, which may close a gap.
 
-/// Returns whether each edge of a mesh is in as many triangles of one direction as of the other: then the mesh is closed, and its triangles
-/// are consistently oriented. Complexity: O(n log n).
+/// Returns whether a mesh is closed and its triangles are consistently oriented: for each edge, equally many triangles run along it in
+/// either direction. Complexity: O(n log n).
 bool is_closed(const std::vector<Triangle>& mesh);
 
 /// Returns the number of one triangle of each connected part of a mesh. Parts are connected by corners in equal places.

@@ -110,7 +110,7 @@ struct Side {
 
     const JudgedObject& object;
     std::vector<Triangle> triangles;
-    std::vector<Box3d> boxes;  ///< of the triangles, or of the solid
+    std::vector<Box3d> boxes;  ///< boxes of the triangles, or box of the solid
 };
 
 /// The part of the surface of an object that is near another object.
@@ -138,7 +138,7 @@ struct Surface {
 
     std::vector<Triangle> triangles;  ///< empty for a solid
     std::vector<ConvexBody> bodies;   ///< the triangles, or the solid
-    std::vector<Box3d> boxes;         ///< of the bodies
+    std::vector<Box3d> boxes;         ///< boxes of the bodies
 };
 
 /// Bounds on the distance of two surfaces.

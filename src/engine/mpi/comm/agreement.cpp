@@ -42,8 +42,8 @@ struct OutcomeHeader {
     ErrorCode code = ErrorCode::engine_failed;
     std::uint32_t length = 0;    // length of the message
     std::uint64_t position = 0;  // position of a bad object
-    std::uint64_t index = 0;     // of its ErrorPlace
-    std::int32_t set = no_set;   // of its ErrorPlace; no_set: it has none
+    std::uint64_t index = 0;     // object index of the Error's place
+    std::int32_t set = no_set;   // set of the Error's place; no_set: the Error has no place
 };
 
 bool precedes(const OutcomeHeader& a, const OutcomeHeader& b) {

@@ -23,7 +23,7 @@ namespace octopair {
 struct BadObject {
     std::uint64_t position;  ///< among the objects of all ranks, the second set after the first
     std::string message;
-    std::optional<ErrorPlace> place = {};  ///< as the message names it; without a frame
+    std::optional<ErrorPlace> place = {};  ///< the object as the message names it; has no frame
 };
 
 /// Forwards a stop request of one rank to all ranks, while the ranks work or wait.

@@ -196,7 +196,7 @@ private:
         try {
             (void)group_.find(assignment, nullptr, output, {{}, nobody});
         } catch (const Error&) {
-            return;  // rank 0 throws the same Error to its caller
+            return;  // rank 0 throws this Error to its caller, so this rank ignores it
         }
     }
 

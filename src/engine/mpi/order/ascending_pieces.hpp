@@ -55,7 +55,7 @@ struct WantedRows {
 /// Numbering of the pieces, in ascending order of their objects.
 struct PieceGrid {
     unsigned ranks = 1, windows = 1;
-    bool by_window = false;  ///< pieces of a window are adjacent; otherwise pieces of a rank are
+    bool by_window = false;  ///< true: the pieces of a window are adjacent; false: the pieces of a rank are adjacent
 
     std::size_t size() const { return std::size_t(ranks) * windows; }
     unsigned rank(std::size_t piece) const { return unsigned(by_window ? piece % ranks : piece / windows); }

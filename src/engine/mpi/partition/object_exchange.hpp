@@ -53,7 +53,7 @@ private:
     const Routing& routing_;
     unsigned set_;
     Exchange counts_;
-    std::vector<Sender> senders_;  // by rank
+    std::vector<Sender> senders_;  // for each sending rank
 };
 
 }  // namespace octopair

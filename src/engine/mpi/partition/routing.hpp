@@ -38,7 +38,7 @@ class Routing {
     };
     struct Block {
         unsigned set = 0;
-        ObjectBlock objects = {};                // of the source
+        ObjectBlock objects = {};                // the block's range of objects in the source
         std::optional<std::size_t> bad = {};     // begin of the first batch that has an invalid box
         std::vector<Crosser> crossers = {};      // objects whose boxes extend beyond their home leaf; ascending
         RankCounts counts = {};                  // number of objects for each rank

@@ -24,7 +24,7 @@ SharedMemory make_control_memory(unsigned workers) {
     return memory;
 }
 
-/// Returns true if `a` and `b` are attempts at the same work, with the same shares.
+/// Returns true if pass `b` repeats pass `a`, so that both divide their work into the same shares.
 bool same_work(const Pass& a, const Pass& b) {
     return a.job == b.job && a.kind == b.kind && a.built == b.built && a.bounds.rows.begin == b.bounds.rows.begin;
 }

@@ -123,7 +123,7 @@ private:
     std::chrono::steady_clock::time_point failed_at_;
     std::uint64_t last_events_ = 0;                      // activity counter at the last change
     std::chrono::steady_clock::time_point changed_at_;   // time of the last change
-    std::map<std::uint64_t, unsigned> deaths_by_share_;  // by share, in all attempts at the same pass
+    std::map<std::uint64_t, unsigned> deaths_by_share_;  // number of deaths in each share, over all attempts at a pass
 };
 
 }  // namespace octopair

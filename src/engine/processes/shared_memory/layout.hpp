@@ -40,7 +40,7 @@ inline constexpr std::array<const char*, 5> step_names = {"prepare", "encode", "
 
 enum class PassKind : std::uint32_t { count, count_by_object, list_octal, stream_octal, list_ascending };
 
-/// An array in a region: `count` elements from byte `offset` on. Empty if `count` is 0; then the region is unused.
+/// An array in a region: `count` elements from byte `offset` on. If `count` is 0, the array is empty and the region is not used.
 struct ArrayRef {
     std::uint32_t region = 0;
     std::uint64_t offset = 0;

@@ -40,7 +40,8 @@ int retried(Call&& call) {
     return result;
 }
 
-/// Creates the file as not executable, which some systems require. Older kernels reject the flag; then without it.
+/// Creates the file. Some systems require the flag that makes it not executable. If an older kernel rejects this flag, creates the file
+/// without it.
 Descriptor create_file() {
     constexpr unsigned flags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
     constexpr unsigned not_executable = 8;  // MFD_NOEXEC_SEAL of Linux 6.3, which not all headers have

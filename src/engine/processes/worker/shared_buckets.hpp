@@ -27,7 +27,7 @@ public:
 private:
     class RegionPages;
     class Writer;
-    using Strings = std::vector<PageString>;  // by bucket
+    using Strings = std::vector<PageString>;  // the pages of each bucket
     void restore();
     std::uint64_t last_commit(unsigned slot) const;
     Strings committed_strings(unsigned slot) const;
