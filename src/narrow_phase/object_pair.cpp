@@ -47,7 +47,7 @@ bool same_parameters(const ConvexSolid& a, const ConvexSolid& b) {
     return a.core == b.core && a.extents == b.extents && a.radius == b.radius && a.points.size() == b.points.size();
 }
 
-/// Returns true if the objects have the same kind of shape, equal sizes and (meshes) equal triangles, and if no corner is farther than
+/// Returns true if the objects have the same kind of shape, equal sizes and (meshes) equal triangles. No corner may be farther than
 /// `tolerance` from the same corner of the other object. Corners of shapes without vertices are those of their bounding box. So a cube
 /// and its copy that is turned by 90 degrees are not duplicates.
 bool are_duplicates(const PosedObject& a, const PosedObject& b, double tolerance) {

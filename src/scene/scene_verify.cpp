@@ -38,7 +38,7 @@ Verification Scene::State::verify(const std::stop_token& stop) {
             std::visit([&](auto boxes) { swept = with_swept_boxes(boxes, objects_.settled()); }, objects.boxes);
             std::visit([&](const auto& boxes) { objects.boxes = std::span(boxes); }, swept);
         }
-        // The rule of traits (Traits in octopair/scene.hpp), without the code that the scene uses for it.
+        // The rule of traits (Traits in octopair/scene.hpp), written again, so that the check shares no code with the scene.
         const auto allows = [&table](std::uint32_t a, std::uint32_t b) {
             if (!table.alive(a) || !table.alive(b)) return false;
             const Traits first = table.traits(a), second = table.traits(b);

@@ -72,7 +72,7 @@ public:
     const RankCosts& costs() const { return costs_; }
 
 private:
-    /// State of one call on this rank, which the steps pass on.
+    /// State of one call on this rank, which one step of the search passes to the next.
     struct RankCall {
         RankCall(RankSearch& search, const detail::Request& asked, const detail::Output& out, const ProgressSink& sink)
             : request(asked),

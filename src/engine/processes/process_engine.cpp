@@ -55,7 +55,7 @@ std::vector<std::string> candidate_paths(const std::string& packaged) {
 
 /// Returns the first of: `requested` if not empty; the path in OCTOPAIR_WORKER; the first executable of the candidates.
 /// Candidates are files octopair-worker, in this order: in the folder of this program, in the libexec folder beside it, in the
-/// libexec folder of this library, at `packaged` (may be empty), in the build tree, in the configured installation.
+/// libexec folder of this library. Then: at `packaged` (may be empty), in the build tree, in the configured installation.
 /// Throws: Error{engine_failed} with the candidates if none is executable.
 std::string find_worker_program(const std::string& requested, const std::string& packaged) {
     if (!requested.empty()) return requested;

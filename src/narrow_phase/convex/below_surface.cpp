@@ -56,9 +56,9 @@ Quadratic squared(double offset, const Vector& along) {
 /// Returns a number that the function exceeds nowhere in the unit ball. It is the greatest value itself, up to rounding.
 /// Requires: no intermediate result overflows.
 ///
-/// For any number m above 0 and above all eigenvalues of the matrix, f(y) <= f(y) + m (1 - y'y) in the ball, and the right side is
-/// concave, so its greatest value is known. The least of these bounds is the greatest value of f, also if f is neither convex nor
-/// concave (S-lemma).
+/// Let m be above 0 and above all eigenvalues of the matrix. In the ball, f(y) <= f(y) + m (1 - y'y). The right side is concave, so
+/// its greatest value is known: a bound for each m. The least of these bounds is the greatest value of f, also if f is neither
+/// convex nor concave (S-lemma).
 /// Source: Polik, Terlaky: A survey of the S-lemma, SIAM Review 49 (2007).
 double greatest_on_ball(const Quadratic& function) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(function.square);

@@ -85,9 +85,9 @@ struct CoreGap {
 /// larger than `enough`.
 CoreGap gjk_distance(const LocalConvexPair& pair, std::optional<double> enough = {});
 
-/// Two convex objects in units in which their numbers have about the size 1. The functions of pairs multiply up to four lengths. So they
-/// first scale a pair whose size is beyond 2^200 or below 2^-200. The unit is a power of two, so scaling rounds nothing (but the parts of
-/// an object that are 2^800 times smaller than the pair).
+/// Copies of two convex objects, in units in which their numbers are about 1. The functions of convex_pair.hpp multiply up to four
+/// lengths, which may overflow. So they first scale pairs larger than 2^200 or smaller than 2^-200. The unit is a power of two. So
+/// scaling rounds only numbers that are 2^800 times smaller than the pair.
 class ScaledPair {
 public:
     /// Returns true if the functions of pairs must scale a pair of this size.

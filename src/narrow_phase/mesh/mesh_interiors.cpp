@@ -28,8 +28,8 @@ struct View {
     std::uint32_t TouchingTriangles::*other_place;
 };
 
-/// Tests the face of the own mesh that holds `point`. Returns true if the face lies inside the other mesh, or if it lies on the other
-/// mesh's surface with the interiors of both meshes on the same side.
+/// Tests the face of the own mesh that holds `point`. Returns true if the face lies inside the other mesh. Also returns true if it lies
+/// on the other mesh's surface, with the interiors of both meshes on the same side.
 bool face_meets(const View& view, NearbyPoint point) {
     std::array<bool, 2> inside;
     for (const std::size_t i : {0U, 1U}) {

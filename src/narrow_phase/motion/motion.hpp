@@ -23,8 +23,8 @@ public:
     double angle() const { return angle_; }  ///< angle of rotation, 0 to pi
     /// Upper bound on the speed of points within `reach` of the object's origin, in its own coordinates.
     double speed(double reach) const;
-    /// Upper bound on how far a point within `reach` of the object's origin is, between two times that are `step` apart, from the straight
-    /// line between its places at these times.
+    /// Upper bound on the distance of a moving point from the straight line between its places at two times, `step` apart. The point is
+    /// within `reach` of the object's origin.
     double sagitta(double reach, double step) const;
 
 private:

@@ -15,7 +15,7 @@
 
 namespace octopair {
 
-/// An entry that is added together with its unit. `unit` counts from the first unit that is added with it.
+/// An entry for add(), which adds units and their entries. `unit`: number of the entry's unit among the added units.
 struct UnitEntry {
     std::uint32_t unit;
     std::uint32_t object;

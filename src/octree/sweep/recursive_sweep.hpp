@@ -29,8 +29,8 @@ namespace octopair {
 /// Finds the pairs of `join` by one sweep along `axis`, tile by tile. Throws: Error{cancelled}.
 void tiled_sweep(const ScanContext& context, const SweepInput& join, unsigned axis, Executor& executor);
 
-/// Divides the entries of a list into eight groups by shape, and returns the positions of each group. Bit k of a group's number is set if
-/// its boxes are longer on axis k than a quarter of the extent of the whole list.
+/// Divides the entries of a list into eight groups by shape, and returns the positions of each group. Bit k of a group's number: its
+/// boxes are longer on axis k than a quarter of the list's extent.
 /// Throws: Error{cancelled}.
 std::array<std::vector<std::uint32_t>, 8> part_by_shape(const EntryList& list, const std::stop_token& stop);
 

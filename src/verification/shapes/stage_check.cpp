@@ -20,7 +20,7 @@ const Finding* StageCheck::finding_of(Pair pair) const {
     return at != collisions_.end() && at->pair == pair ? &at->finding : nullptr;
 }
 
-/// Returns what is wrong with a pair of boxes; empty: nothing.
+/// Judges a pair of boxes. Returns a text for users that describes its fault; empty if there is no fault.
 std::string StageCheck::judge(Pair pair, std::set<std::string>& not_checked) const {
     const Finding* const finding = finding_of(pair);
     if (std::ranges::binary_search(excluded_, pair)) return finding != nullptr ? "it is excluded" : "";

@@ -15,7 +15,7 @@ namespace octopair {
 
 namespace {
 
-/// A sampled key, and the number of keys of its rank that it represents.
+/// A sampled key of a rank, and the number of this rank's keys that the sampled key represents.
 struct SampledKey {
     std::uint64_t key, weight;
 };

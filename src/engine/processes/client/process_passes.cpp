@@ -122,7 +122,8 @@ std::uint64_t ProcessPasses::count(Call& call, double progress) {
     return all;
 }
 
-/// Repeats the whole pass when a worker is lost: a single share cannot be repeated, as it may already be partly counted.
+/// Repeats the whole pass when a worker is lost. The lost share alone cannot be repeated, because the lost worker may already have added
+/// a part of it to the counts.
 void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
     struct Again {};
     pass_.kind = PassKind::count_by_object;
