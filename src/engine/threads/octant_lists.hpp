@@ -15,8 +15,7 @@ namespace detail {
 
 struct OctantLists {
     std::vector<OctantSummary> octants;
-    std::vector<std::uint64_t>
-        begins;  ///< by octant: position in `objects` of its first object; then the size of `objects`
+    std::vector<std::uint64_t> begins;   ///< by octant: its begin in `objects`; at the end, the size of `objects`
     std::vector<std::uint32_t> objects;  ///< objects of all octants
     std::vector<std::uint32_t> homes;    ///< by object: its home, or Octants::no_octant
     Box3d space;

@@ -20,7 +20,7 @@ enum class TriangleMeeting : std::uint8_t {
 
 struct TriangleContact {
     TriangleMeeting meeting = TriangleMeeting::none;
-    unsigned count = 0;                  ///< number of points: 1: a point; 2: a segment; more: a polygon, in order
+    unsigned count = 0;  ///< number of points: 0: none; 1: a point; 2: a segment; more: a polygon, in order
     std::array<Point3d, 6> points = {};  ///< corners of the set that the triangles have in common
 };
 
