@@ -67,7 +67,8 @@ private:
                                      second != nullptr ? std::optional(second->group_masks()) : std::nullopt));
     }
 
-    // Adds the filter for --same-parent. Not for a join: the objects of a pair are then in different files, and have different parents.
+    // Adds the filter of --same-parent exclude, which drops pairs of objects with the same parent. A join has none: its pairs are of objects
+    // in different files, which have different parents.
     void add_parents() {
         if (!join() && sets_.first.shaped != nullptr) {
             add_filter(make_parent_filter(sets_.first.shaped->parents()));

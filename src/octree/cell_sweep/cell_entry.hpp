@@ -32,7 +32,7 @@ struct alignas(16) CellEntry {
 
     std::uint32_t low(unsigned k) const { return ends[k] & last_octant_cell; }
     std::uint32_t high(unsigned k) const { return ends[k] >> 16 & last_octant_cell; }
-    /// True if the entries share a bit of their masks.
+    /// True if the entries share a flag, so that they are no pair of this octant.
     friend bool share_flag(const CellEntry& a, const CellEntry& b) {
         return (((a.ends[0] & b.ends[0]) | (a.ends[1] & b.ends[1]) | (a.ends[2] & b.ends[2])) & flag_bits) != 0;
     }

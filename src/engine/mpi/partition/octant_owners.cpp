@@ -14,8 +14,8 @@ namespace {
 constexpr double tests_per_entry_cost = 64;
 constexpr double pairs_per_entry_cost = 8;
 
-/// Returns the estimated work in each octant, in units of the cost of an entry without tests and pairs. A sweep tests each entry against
-/// the entries that overlap it on the sweep's axis. The owner divides a left octant until each entry has few such tests.
+/// Returns the estimated work in each octant. One unit of work is an entry that no other entry is tested against. A sweep tests each entry
+/// against the entries that overlap it on the sweep's axis. The rank that owns an octant divides it until each entry has few such tests.
 std::vector<std::uint64_t> work_of(const SharedTop& top, std::span<const std::uint32_t> entries) {
     std::vector<std::uint64_t> work(entries.size());
     for (std::size_t octant = 0; octant < work.size(); ++octant) {

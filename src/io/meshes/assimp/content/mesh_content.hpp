@@ -51,7 +51,7 @@ MeshContent correct_ac3d(const std::string& path, std::string_view bytes);
 /// Writes an AMF file in a form that Assimp 5.2 reads rightly.
 /// What Assimp does with the original:
 /// - Only the first volume of an object is read, and the last mesh.
-/// - A number ends at a comma. A vertex without coordinates is left out, so that all indices after it are wrong.
+/// - It drops the part of a number behind a decimal comma. A vertex without coordinates is left out, so that all indices after it are wrong.
 /// - Objects without an id, or with one id, replace each other.
 /// - The angles of an instance are taken for a translation.
 ///
