@@ -75,7 +75,7 @@ int read_as_latin(void*, const XML_Char*, XML_Encoding* encoding) {
     return XML_STATUS_OK;
 }
 
-XmlName resolved(std::string_view name) {
+XmlName split_name(std::string_view name) {
     const std::size_t at = name.rfind(separator);
     if (at == std::string_view::npos) return {{}, name};
     return {name.substr(0, at), name.substr(at + 1)};
@@ -83,11 +83,11 @@ XmlName resolved(std::string_view name) {
 
 }  // namespace
 
-XmlTag::XmlTag(const char* name, const char* const* attributes) : name_(resolved(name)), attributes_(attributes) {}
+XmlTag::XmlTag(const char* name, const char* const* attributes) : name_(split_name(name)), attributes_(attributes) {}
 
 const char* XmlTag::find(const XmlName& name) const {
     for (const char* const* at = attributes_; *at != nullptr; at += 2) {
-        if (resolved(*at) == name) return at[1];
+        if (split_name(*at) == name) return at[1];
     }
     return nullptr;
 }
@@ -120,7 +120,8 @@ struct XmlParser::Callbacks {
         const auto text = [](const char* characters) { return characters == nullptr ? "" : characters; };
         guarded(user, [&](XmlParser& self) { self.handler_.prefix(text(prefix), text(uri)); });
     }
-    static void refuse_dtd(void* user, const char*, const char*, const char*, int) {
+    template <typename... Ignored>
+    static void refuse_dtd(void* user, Ignored...) {
         guarded(user, [](XmlParser& self) {
             refuse(self.place_,
                    fmt::format("line {}: has a DTD (<!DOCTYPE>), which 3MF does not allow; remove it", self.line()));
@@ -138,7 +139,7 @@ XmlParser::XmlParser(std::string place, XmlHandler& handler, Mode mode, const ch
     XML_SetElementHandler(parser_.get(), Callbacks::begin, Callbacks::end);
     if (mode == Mode::strict) {
         XML_SetStartNamespaceDeclHandler(parser_.get(), Callbacks::prefix);
-        XML_SetStartDoctypeDeclHandler(parser_.get(), Callbacks::refuse_dtd);
+        XML_SetStartDoctypeDeclHandler(parser_.get(), &Callbacks::refuse_dtd);
     } else {
         XML_SetCharacterDataHandler(parser_.get(), Callbacks::text);
         XML_SetUnknownEncodingHandler(parser_.get(), &read_as_latin, nullptr);
