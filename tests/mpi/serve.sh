@@ -22,6 +22,7 @@ first_rank() { sed -n 's/.* started .* ranks=3 pid=//p' log; }
 rank() { ranks | grep -vx "$(first_rank)" | sed -n "$1p"; }
 # ARGUMENTS...: starts a server on 3 ranks.
 start() {
+    : > log  # The command below empties the log late, maybe after the first grep. The log of an earlier server says "started", too.
     "$mpirun" -n 3 "$program" serve --listen "$address" --engine mpi --state state --max-memory 128M "$@" 2> log &
     server=$!
     for _ in $(seq 600); do grep -q ' started ' log && break || sleep 0.05; done
