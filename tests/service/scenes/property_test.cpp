@@ -159,7 +159,8 @@ TEST_P(RemoteSceneProperty, EveryStepIsThatOfALocalScene) {
         failures += history.scene().failures();
         failed_steps += history.scene().failed_steps();
     }
-    EXPECT_TRUE(count < 2 || (failures > 0 && failed_steps > 0));
+    // Only some calls lack memory, and not all of these fail. So a few histories may have none that failed.
+    EXPECT_TRUE(count < 10 || (failures > 0 && failed_steps > 0));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RemoteSceneProperty, ::testing::ValuesIn(all_kind_names()), param_name);
