@@ -101,7 +101,7 @@ public:
 private:
     /// Progress of the call when the engine's search ends, as a fraction. The rest is for the check, which takes longer than the search.
     static constexpr double search_progress = 0.3;
-    /// The same fraction for an ascending stream: most of its pairs are checked during the search, before the last pair is found.
+    /// Progress of an ascending stream when the search ends. The fraction is larger, because most pairs are checked during the search.
     static constexpr double stream_progress = 0.9;
 
     bool is_stream() const { return output_.sink != nullptr; }

@@ -42,14 +42,14 @@ MeshContent check_mesh_content(const std::string& path, const KnownFormat& known
 // Each check gets the content of a file. `path` is for messages. Throws: as check_mesh_content().
 
 /// Finds in an AC3D file what Assimp 5.2 reads wrongly, and moves lines to their places.
-/// What Assimp does:
+/// Assimp makes these errors with the file:
 /// - A corner beyond the vertices becomes the first vertex. A surface with a material beyond the list is lost.
 /// - A line of data that begins with a keyword is read as the model.
 /// - The place of an object with surfaces does not move the object's children and lines. A rotation (rot) also turns the place.
 MeshContent correct_ac3d(const std::string& path, std::string_view bytes);
 
 /// Writes an AMF file in a form that Assimp 5.2 reads rightly.
-/// What Assimp does with the original:
+/// Assimp makes these errors with the original:
 /// - Only the first volume of an object is read, and the last mesh.
 /// - It drops the part of a number behind a decimal comma. A vertex without coordinates is left out, so that all indices after it are wrong.
 /// - Objects without an id, or with one id, replace each other.
@@ -59,7 +59,7 @@ MeshContent correct_ac3d(const std::string& path, std::string_view bytes);
 MeshContent correct_amf(const std::string& path, std::string_view bytes);
 
 /// Writes a COLLADA file in a form that Assimp 5.2 reads rightly.
-/// What Assimp does with the original:
+/// Assimp makes these errors with the original:
 /// - <skew> is ignored. The axis of <rotate> must have the length 1, and the up of <lookat> must be perpendicular.
 /// - A comma in an index is an endless loop. Negative indices are read as 0.
 /// - A fan of triangles becomes one polygon. A primitive without a count is empty. A strip with fewer than three corners crashes Assimp.
@@ -73,7 +73,7 @@ MeshContent correct_amf(const std::string& path, std::string_view bytes);
 MeshContent correct_collada(const std::string& path, std::string_view bytes);
 
 /// Finds in a DirectX file (.x) what Assimp 5.2 reads wrongly, and corrects it where the meaning is certain.
-/// What Assimp does:
+/// Assimp makes these errors with the file:
 /// - A corner beyond the vertices is left out of its face. Faces with a material beyond the list are lost.
 /// - The object after a reference in braces is lost.
 /// - A comma between whole numbers of a matrix is a decimal point.
@@ -84,7 +84,7 @@ MeshContent correct_collada(const std::string& path, std::string_view bytes);
 MeshContent correct_directx(const std::string& path, std::string_view bytes);
 
 /// Writes a DXF file as faces and lines, which Assimp 5.2 reads rightly.
-/// What Assimp does with the original:
+/// Assimp makes these errors with the original:
 /// - A block is inserted without its rotation, rows, columns and direction of extrusion, and its position is scaled. Blocks in blocks are lost.
 /// - Entities after a text that begins with a brace, and after a POLYLINE without a VERTEX, are lost.
 /// - A corner of a polyface mesh is lost if the edge after it is invisible. Meshes of M x N points are lines. Every second edge of a line is lost.
@@ -94,7 +94,7 @@ MeshContent correct_directx(const std::string& path, std::string_view bytes);
 MeshContent correct_dxf(const std::string& path, std::string_view bytes);
 
 /// Finds in an OpenGEX file what Assimp 5.2 reads wrongly or leaves out.
-/// What Assimp does:
+/// Assimp makes these errors with the file:
 /// - Structures Node and BoneNode are left out, with all that is in them.
 /// - Translation, Rotation and Scale are ignored. If a node has several transforms, only the last transform counts.
 /// - If a mesh has several index arrays, only the last array counts. Each face has its first three corners only.
@@ -102,7 +102,7 @@ MeshContent correct_dxf(const std::string& path, std::string_view bytes);
 MeshContent check_opengex(const std::string& path, std::string_view bytes);
 
 /// Writes an X3D file in a form that Assimp 5.2 reads rightly.
-/// What Assimp does with the original:
+/// Assimp makes these errors with the original:
 /// - After an empty group, and after a group with USE, nodes are placed in the wrong group or lost.
 /// - A comma between numbers ends the number before it, and the number after it is lost.
 /// - The axis of a rotation must have the length 1.
@@ -115,7 +115,7 @@ MeshContent check_opengex(const std::string& path, std::string_view bytes);
 MeshContent correct_x3d(const std::string& path, std::string_view bytes);
 
 /// Writes an XGL file in a form that Assimp 5.2 reads rightly.
-/// What Assimp does with the original:
+/// Assimp makes these errors with the original:
 /// - It ignores all transforms, and all references to objects.
 /// - It reads the comma after a whole number as a decimal point.
 ///
