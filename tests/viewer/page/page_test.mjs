@@ -322,27 +322,47 @@ test('a link holds the view', 'moving', 100, async ({page, address, browser}) =>
   await other.close();
 });
 
-test('live frames', 'live', 300, async ({page}) => {
+const nextPicture = page => page.evaluate(() => new Promise(done => requestAnimationFrame(done)));
+
+// The mock stands still from now on, and the page shows its last frame and has asked for the next one.
+async function standStill(page, scene) {
+  scene.stop();
+  await waitForData(page, 'frame', scene.now);
+  while (scene.waiting.length === 0) await nextPicture(page);
+}
+
+test('live frames', 'live', 300, async ({page, scene}) => {
   const first = Number(await data(page, 'frame'));
   await page.waitForFunction(frame => Number(document.documentElement.dataset.frame) > frame + 3, first);
+  await standStill(page, scene);
+  const asked = [];
+  const {receive} = scene;
+  scene.receive = (message, send) => {
+    asked.push(message.want);
+    receive.call(scene, message, send);
+  };
   await page.click('#play');
-  await page.waitForTimeout(300);
-  const paused = await data(page, 'frame');
-  await page.waitForTimeout(400);
-  assert.equal(await data(page, 'frame'), paused);
+  // The frame that the page asked for before it was paused still comes, and no other one.
+  scene.step();
+  const paused = scene.now;
+  await waitForData(page, 'frame', paused);
+  await nextPicture(page);
+  assert.deepEqual(asked, []);
+  scene.step();
+  scene.step();
   await page.click('#play');
-  await page.waitForFunction(frame => Number(document.documentElement.dataset.frame) > frame, Number(paused));
+  await waitForData(page, 'frame', scene.now);
+  assert.equal(asked[0], paused);
   assert.match(await text(page, '#frame-text'), /^frame \d+, step 1\.23 ms$/);
 });
 
 test('live partners are those of a whole frame', 'live', 300, async ({page, scene}) => {
-  await page.waitForTimeout(800);
-  await page.click('#play');
-  await page.waitForTimeout(300);
-  const frame = Number(await data(page, 'frame'));
-  assert.equal(await data(page, 'pairs'), String(scene.history[frame].pairs.length));
+  await page.waitForFunction(() => Number(document.documentElement.dataset.frame) > 3);
+  await standStill(page, scene);
+  const {pairs} = scene.history[scene.now];
+  assert.equal(await data(page, 'pairs'), String(pairs.length));
   await page.keyboard.press('l');
-  await waitForData(page, 'lines', scene.history[frame].pairs.length + await page.evaluate(() => window.octopairView.frame().ended));
+  await waitForData(page, 'lines', pairs.length + await page.evaluate(() => window.octopairView.frame().ended));
 });
 
 test('a lost connection is told, and the page keeps its frame', 'live', 50, async ({page, stop}) => {
