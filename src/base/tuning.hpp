@@ -39,7 +39,7 @@ struct Tuning {
     struct Split {
         double always_above = 4096;              ///< an octant with more objects is split: their sweep misses the cache
         double never_up_to = 1024;               ///< an octant with at most this many stays whole; <= `always_above`
-        double max_tests_per_object = 60;        ///< an octant is split if its sweep tests more others per object
+        double max_tests_per_object = 90;        ///< an octant is split if its sweep tests more others per object
         double max_entries_per_object = 1.6;     ///< maximum entries below an octant per object that begins in it
         double max_handed_growth = 1.5;          ///< maximum growth of entries and handed down boxes by a split
         std::uint64_t max_cells_per_octant = 4;  ///< maximum size of the table from cells to leaves
@@ -86,7 +86,7 @@ struct Tuning {
         std::size_t large_join = 1 << 15;       ///< a join of more boxes is divided among threads
         std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times groups of columns per call: some milliseconds
         std::size_t hits = 1024;                ///< masks of hits that a call of the kernel may write; at least 8
-        std::size_t cell_hits = 2048;           ///< number of hits whose pairs are decided at a time; at least 128
+        std::size_t cell_hits = 2048;           ///< number of hits whose pairs are decided at a time; at least 320
         std::size_t max_cell_buckets = 2048;    ///< maximum number of buckets of a sort by cells; a power of two
         std::size_t pairs = 2048;               ///< pairs that are buffered before they are written
         std::size_t max_buckets = 4096;         ///< maximum number of buckets: they stay in the L1 cache

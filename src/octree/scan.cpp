@@ -163,6 +163,7 @@ public:
         if (runs_owner_ != octant) find_runs(octant, memory_.runs);
         memory_.next_runs.clear();
         if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, memory_.next_runs);
+        ahead_ = RunPrefetcher(memory_.next_runs);
         context_.rule.join() ? scan_join(handed) : scan_self(handed);
         std::swap(memory_.runs, memory_.next_runs);
         runs_owner_ = octant + 1;
@@ -179,7 +180,7 @@ private:
         const std::size_t own = std::size_t(octree_.entry_count(octant_));
         if (own + handed.size() < 2) return;
         const bool laid_out = own <= tuning().scan.max_swept_list;
-        if (laid_out) memory_.own_set.assign(memory_.runs, memory_.next_runs);
+        if (laid_out) memory_.own_set.assign(memory_.runs);
         if (!laid_out) count_path(Path::own_too_large);
         if (own > 1 && !(laid_out && try_own_sweep())) {
             const EntryList crowd = crowd_of({false, any_set}, {});
@@ -241,10 +242,11 @@ private:
     }
 
     bool try_own_sweep() {
-        bool done = try_sweep({{memory_.own_set, memory_.own_set, SweepKind::self}});
+        const CellSweep sweep{memory_.own_set, memory_.own_set, SweepKind::self, &ahead_};
+        bool done = try_sweep({sweep});
         for (unsigned axis = 1; !done && axis < 3; ++axis) {
             turn_own();
-            done = try_sweep({{memory_.own_set, memory_.own_set, SweepKind::self}});
+            done = try_sweep({sweep});
             if (done) count_path(Path::swept_on_other_axis);
         }
         count_path(done ? Path::own_swept : Path::own_window_too_wide);
@@ -343,6 +345,8 @@ private:
             rows += sweep.rows.size();
         }
         if (tests > tuning().scan.max_tests_per_box * rows) return false;
+        memory_.own_set.make_planes();
+        memory_.handed_set.make_planes();
         executor_.for_each_writing(1, [&](std::size_t, ShareWriter& writer) {
             for (const CellSweep& sweep : sweeps) pair_maker_.sweep(sweep, gaps_, writer);
         });
@@ -431,7 +435,8 @@ private:
     SweepChooser chooser_;
     OctantCells cells_;
     CertainGaps gaps_;
-    unsigned turns_ = 0;  // number of times that the own entries, and gaps_, were turned
+    RunPrefetcher ahead_;  // the entries of the next octant
+    unsigned turns_ = 0;   // number of times that the own entries, and gaps_, were turned
     CellPairMaker pair_maker_{context_, memory_.pair_maker};
     std::array<Crowd, 4> crowd_of_part_;  // by Part::number(); empty until they are needed
 };

@@ -4,25 +4,25 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 #ifndef OCTOPAIR_OCTREE_LANE_TABLE
 #define OCTOPAIR_OCTREE_LANE_TABLE
 
 namespace octopair {
 
-/// Table of the lanes in each set of lanes of a SIMD register. A kernel uses it to move the lanes of a set to the front of a register. It
-/// replaces Highway's own table, which g++ 12 copies on each use.
+/// Table of the lanes in each set of eight lanes, for instruction sets without an instruction that moves the lanes of a set to the front.
+/// It replaces Highway's own table, which g++ 12 copies on each use.
 struct LaneTable {
     static constexpr std::size_t lanes = 8;
     // Arrays by set. A set is a bit mask of lanes.
-    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};    ///< lanes of the set, ascending
-    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> rank{};  ///< by lane: number of the set's lanes before
-    std::array<std::uint8_t, 1 << lanes> count{};                    ///< number of lanes of the set
+    std::array<std::array<std::uint8_t, lanes>, 1 << lanes> of{};  ///< lanes of the set, ascending
+    std::array<std::uint8_t, 1 << lanes> count{};                  ///< number of lanes of the set
 
     constexpr LaneTable() {
         for (std::size_t set = 0; set < of.size(); ++set) {
             for (std::uint8_t lane = 0; lane < lanes; ++lane) {
-                rank[set][lane] = count[set];
                 if (set >> lane & 1u) of[set][count[set]++] = lane;
             }
         }
@@ -47,26 +47,67 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Returns a mask of up to 16 lanes as bits.
+/// A bit mask of the lanes of a register.
+template <typename D>
+using LaneBits = std::conditional_t<(hn::MaxLanes(D()) > 32), std::uint64_t, std::uint32_t>;
+
 template <typename D, typename M>
-HWY_INLINE std::uint32_t bits_of(D d, M mask) {
+HWY_INLINE LaneBits<D> bits_of(D d, M mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
-    return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8;
+    LaneBits<D> bits;
+    std::memcpy(&bits, bytes, sizeof(bits));
+    return bits;
 }
 
 #if HWY_TARGET != HWY_SCALAR
 
-using Words = hn::CappedTag<std::uint32_t, LaneTable::lanes>;
+/// Maximum number of lanes of Words.
+inline constexpr std::size_t max_lanes = HWY_TARGET <= HWY_AVX3 ? 16 : LaneTable::lanes;
+using Words = hn::CappedTag<std::uint32_t, max_lanes>;
 using Lanes = hn::Vec<Words>;
 
-/// Returns small numbers, one for each lane.
-HWY_INLINE Lanes lane_numbers(const std::array<std::uint8_t, LaneTable::lanes>& numbers) {
-    return hn::PromoteTo(Words(), hn::LoadU(hn::Rebind<std::uint8_t, Words>(), numbers.data()));
+/// Number of each lane. Highway's Iota makes g++ 12 store the numbers one by one.
+HWY_INLINE Lanes lane_numbers() {
+    alignas(64) static constexpr std::uint32_t numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    return hn::Load(Words(), numbers);
 }
 
-/// Returns the index with which TableLookupLanes moves the lanes of a set to the front.
-HWY_INLINE auto to_front(std::uint32_t set) { return hn::IndicesFromVec(Words(), lane_numbers(lanes_in.of[set])); }
+/// Returns a bit mask of the first `count` lanes, or of all lanes if there are fewer.
+HWY_INLINE std::uint32_t first_lanes(std::size_t count) {
+    constexpr std::uint32_t all = (1u << hn::MaxLanes(Words())) - 1;
+    return count >= hn::MaxLanes(Words()) ? all : (1u << count) - 1;
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// Moves the lanes of a set to the front of registers.
+class LanesToFront {
+public:
+    HWY_INLINE explicit LanesToFront(std::uint32_t set) {
+        const std::uint8_t bytes[8] = {std::uint8_t(set), std::uint8_t(set >> 8)};
+        mask_ = hn::LoadMaskBits(Words(), bytes);
+    }
+    HWY_INLINE Lanes operator()(Lanes numbers) const { return hn::Compress(numbers, mask_); }
+
+private:
+    hn::Mask<Words> mask_;
+};
+
+#else
+
+class LanesToFront {
+public:
+    HWY_INLINE explicit LanesToFront(std::uint32_t set)
+        : lanes_(hn::IndicesFromVec(Words(), hn::PromoteTo(Words(), hn::LoadU(Bytes(), lanes_in.of[set].data())))) {}
+    HWY_INLINE Lanes operator()(Lanes numbers) const { return hn::TableLookupLanes(numbers, lanes_); }
+
+private:
+    using Bytes = hn::Rebind<std::uint8_t, Words>;
+    decltype(hn::IndicesFromVec(Words(), Lanes())) lanes_;
+};
+
+#endif
 
 /// Transposes blocks of four numbers. Before: block k of register i has the numbers of item 4 k + i. After: register i has number i of
 /// all items. A second call restores the first form.
@@ -82,15 +123,28 @@ HWY_INLINE void transpose(Lanes (&registers)[4]) {
     registers[3] = hn::InterleaveUpper(d, upper02, upper13);
 }
 
-/// Loads the four numbers of item i. If a register has eight lanes, also loads the four numbers of item i + 4. at(i): address of item i.
+/// Loads the four numbers of items i, i + 4 and so on, one item for each block of four lanes. at(i): address of item i.
 template <typename D, typename At>
 HWY_INLINE hn::Vec<D> load_blocks(D d, std::size_t i, const At& at) {
-    const hn::FixedTag<std::uint32_t, 4> block;
-    const auto first = hn::LoadU(block, at(i));
-    if constexpr (hn::MaxLanes(D()) == 8) {
-        return hn::Combine(d, hn::LoadU(block, at(i + 4)), first);
+    constexpr std::size_t lanes = hn::MaxLanes(D());
+    if constexpr (lanes == 4) {
+        return hn::LoadU(d, at(i));
     } else {
-        return first;
+        const hn::Half<D> half;
+        return hn::Combine(d, load_blocks(half, i + lanes / 2, at), load_blocks(half, i, at));
+    }
+}
+
+/// Stores blocks of four numbers to items i, i + 4 and so on. at(i): address of item i, aligned to 16 bytes.
+template <typename D, typename At>
+HWY_INLINE void store_blocks(D d, hn::Vec<D> blocks, std::size_t i, const At& at) {
+    constexpr std::size_t lanes = hn::MaxLanes(D());
+    if constexpr (lanes == 4) {
+        hn::Store(blocks, d, at(i));
+    } else {
+        const hn::Half<D> half;
+        store_blocks(half, hn::LowerHalf(half, blocks), i, at);
+        store_blocks(half, hn::UpperHalf(half, blocks), i + lanes / 2, at);
     }
 }
 

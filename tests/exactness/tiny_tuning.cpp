@@ -73,7 +73,7 @@ void shrink(Tuning::Sweep& sweep, Shrinker& to) {
     to.one_of<std::size_t>(sweep.large_join, {1, 4, 20});
     to.one_of<std::size_t>(sweep.tests_per_call, {1, 2, 7});
     to.one_of<std::size_t>(sweep.hits, {8, 9, 20});
-    to.one_of<std::size_t>(sweep.cell_hits, {128, 130, 200});
+    to.one_of<std::size_t>(sweep.cell_hits, {320, 321, 400});
     to.one_of<std::size_t>(sweep.max_cell_buckets, {1, 2, 8});
     to.one_of<std::size_t>(sweep.pairs, {1, 9, 30});
     to.one_of<std::size_t>(sweep.max_buckets, {2, 4, 16});

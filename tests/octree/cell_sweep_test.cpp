@@ -42,11 +42,12 @@ CellSet sorted_set(std::span<const CellEntry> entries) {
         runs.push_back(entries.subspan(begin, std::min<std::size_t>(7, entries.size() - begin)));
     }
     CellSet set;
-    set.assign(runs, runs);
+    set.assign(runs);
+    set.make_planes();
     return set;
 }
 
-constexpr std::size_t sizes[] = {0, 1, 2, 3, 4, 5, 31, 100, 700};
+constexpr std::size_t sizes[] = {0, 1, 2, 3, 4, 5, 31, 40, 63, 64, 65, 100, 130, 700};
 
 TEST(CellSet, SortsByBucketThenPosition) {
     std::mt19937 random(1);
@@ -60,11 +61,10 @@ TEST(CellSet, SortsByBucketThenPosition) {
         for (std::size_t i = 0; i < size; ++i) {
             ASSERT_EQ(set.entries()[i].object, expected[i].object);
             ASSERT_EQ(set.entries()[i].ends, expected[i].ends);
-            const CellColumn column = column_of(expected[i]);
-            ASSERT_EQ(set.first_axis()[i], column.first_axis);
-            ASSERT_EQ(set.other_axes()[i], column.other_axes);
+            const auto bytes = plane_bytes(expected[i]);
+            for (std::size_t k = 0; k < cell_planes; ++k) ASSERT_EQ(set.plane(CellPlane(k))[i], bytes[k]);
             const auto end = std::ranges::upper_bound(expected, bucket(expected[i]), {}, bucket);
-            ASSERT_EQ(set.bucket_end(expected[i].low(0)), std::uint32_t(end - expected.begin()));
+            ASSERT_EQ(set.bucket_begins()[bucket(expected[i]) + 1], std::uint32_t(end - expected.begin()));
         }
     }
 }

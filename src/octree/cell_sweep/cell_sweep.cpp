@@ -32,48 +32,34 @@ CertainGaps certain_gaps(const OctantCells& cells, const PairRule& rule) {
 
 namespace {
 
-/// True if a row and a column overlap in the bits of their columns.
-bool overlap(const CellSet& rows, std::size_t row, const CellSet& columns, std::size_t column) {
-    const auto byte = [](std::uint32_t word, unsigned i) { return word >> 8 * i & 0xFFu; };
-    const auto low = [](std::uint32_t ends) { return ends & 0xFFFFu; };
-    const auto high = [](std::uint32_t ends) { return ends >> 16 ^ 0xFFFFu; };
-    const std::uint32_t a = rows.first_axis()[row], b = columns.first_axis()[column];
-    bool overlaps = low(b) <= high(a) && low(a) <= high(b);
-    const std::uint32_t others_a = rows.other_axes()[row], others_b = columns.other_axes()[column];
-    for (const unsigned axis : {0u, 2u}) {
-        overlaps &= byte(others_b, axis) <= (byte(others_a, axis + 1) ^ 0xFFu);
-        overlaps &= byte(others_a, axis) <= (byte(others_b, axis + 1) ^ 0xFFu);
-    }
-    return overlaps;
+/// True if a row and a column overlap in the bytes of their planes.
+bool overlap(const CellEntry& row, const CellEntry& column) {
+    const auto [low1, high1, low2, high2] = plane_bytes(row);
+    const auto [column_low1, column_high1, column_low2, column_high2] = plane_bytes(column);
+    return column_low1 <= high1 && low1 <= column_high1 && column_low2 <= high2 && low2 <= column_high2;
 }
 
 }  // namespace
 
-bool start_crossing_rows(const CellSweep& sweep, CellCursor& cursor) {
-    const std::uint32_t* const columns = sweep.columns.first_axis();
-    const std::uint32_t begin = first_tested(sweep, cursor.row);
-    std::size_t& first = cursor.first_column;
-    while (first < sweep.columns.size() && (columns[first] & 0xFFFFu) < begin) ++first;
-    cursor.column = first;
-    return first < sweep.columns.size();
-}
-
 std::size_t cell_hits_scalar(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
-    const auto& [rows, columns, kind] = sweep;
+    const auto& [rows, columns, kind, ahead] = sweep;
+    const CellWindows windows(sweep);
+    const std::size_t block = sweep.block();
     std::size_t written = 0;
-    for (; cursor.row < rows.size(); cursor.row += row_block, cursor.in_row = false) {
-        if (!start_rows(sweep, cursor)) {
-            cursor.row = rows.size();
-            break;
-        }
-        const std::uint32_t reach = block_reach(sweep, cursor.row);
-        for (; (columns.first_axis()[cursor.column] & 0xFFFFu) <= reach; cursor.column += column_group) {
-            if (written + row_block * column_group > hits.size()) return written;
-            for (std::size_t row = cursor.row; row < cursor.row + row_block; ++row) {
-                for (std::size_t column = cursor.column; column < cursor.column + column_group; ++column) {
-                    const std::uint32_t begin = columns.first_axis()[column] & 0xFFFFu;
-                    if (kind == SweepKind::self ? column <= row : begin < first_tested(sweep, row)) continue;
-                    if (overlap(rows, row, columns, column)) hits[written++] = CellHit(row << 16 | column);
+    for (; cursor.row < rows.size(); cursor.row += block, cursor.in_row = false) {
+        const std::size_t block_end = std::min(cursor.row + block, rows.size());
+        std::size_t end = 0;
+        for (std::size_t row = cursor.row; row < block_end; ++row) end = std::max(end, windows.end(row));
+        if (!cursor.in_row) cursor.column = windows.begin(cursor.row);
+        cursor.in_row = true;
+        for (; cursor.column < end; cursor.column += column_group) {
+            if (written + block * column_group > hits.size()) return written;
+            for (std::size_t row = cursor.row; row < block_end; ++row) {
+                const std::size_t group_end = std::min(cursor.column + column_group, windows.end(row));
+                for (std::size_t column = std::max(cursor.column, windows.begin(row)); column < group_end; ++column) {
+                    if (overlap(rows.entries()[row], columns.entries()[column])) {
+                        hits[written++] = CellHit(row << 16 | column);
+                    }
                 }
             }
         }
@@ -98,20 +84,15 @@ void judge_hits_scalar(const CellSweep& sweep, std::span<CellHit> hits, const Ce
 }
 
 std::uint64_t sampled_tests(const CellSweep& sweep) {
-    const auto& [rows, columns, kind] = sweep;
+    const CellWindows windows(sweep);
     std::uint64_t sum = 0;
     std::size_t samples = 0;
-    const std::size_t stride = tuning().sweep.measured_row_stride;
-    for (std::size_t i = 0; i < rows.size(); i += stride, ++samples) {
-        const CellEntry& row = rows.entries()[i];
-        const std::uint64_t end = columns.bucket_end(row.high(0));
-        const std::uint32_t bucket = row.low(0) >> columns.bucket_shift();
-        const std::uint64_t begin = kind == SweepKind::self ? i + 1
-                                    : bucket == 0           ? 0
-                                                  : columns.bucket_end((bucket - 1) << columns.bucket_shift());
-        sum += end - std::min(begin, end);
+    const std::size_t rows = sweep.rows.size();
+    for (std::size_t row = 0; row < rows; row += tuning().sweep.measured_row_stride, ++samples) {
+        const std::size_t begin = windows.begin(row);
+        sum += std::max(windows.end(row), begin) - begin;
     }
-    return samples == 0 ? 0 : sum * rows.size() / samples;
+    return samples == 0 ? 0 : sum * rows / samples;
 }
 
 }  // namespace octopair

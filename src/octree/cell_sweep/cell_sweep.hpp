@@ -1,17 +1,19 @@
 // Cell sweep: finds the overlapping boxes of sorted sets of one octant by a sweep along its first axis, on cells.
 //
-// A sweep tests each row against the columns that begin within the row:
+// A sweep tests each row against the columns of its window:
 //   self          row i against the columns i + 1, i + 2, ... of the same set
 //   cross         a row against the columns of another set that do not begin in a bucket before the row's
 //   cross_strict  a row against the columns of another set that begin in a bucket behind the row's
-// A bucket is the coarser of the two sets' buckets.
+// Every window ends with the bucket of the row's high end. For two sets, a row's bucket is the coarser of the sets' buckets.
 // One cross sweep, and one cross_strict sweep with rows and columns exchanged, find each pair of two sets once.
 //
-// Hits may be a few too many: the test uses 8 of 15 bits on two axes. judge_hits() compares all bits. If ends differ by fewer
-// cells than their order needs to be certain, the hit is doubtful, and PairRule::refused() decides with the caller's own numbers.
+// Hits may be too many: within a window, the test uses 8 of 15 bits on two axes, and nothing on the first axis. judge_hits() compares all
+// bits. If ends differ by fewer cells than their order needs to be certain, the hit is doubtful, and PairRule::refused() decides with the
+// caller's own numbers.
 //
-// Rows are taken in blocks of 4. A block is tested against groups of 8 columns, in turn; within a group, hits are in the order
-// of rows, then of columns. So the order is the same for any width of the registers.
+// The rows of a self sweep are taken in blocks of 4. The rows of a block are tested against the first 64 columns of their windows, then
+// against the next 64, and so on; within such a group, hits are in the order of rows, then of columns. So the order is the same for any
+// width of the registers.
 //
 // The functions whose names end in _scalar are the specification of the SIMD versions (cell_sweep_kernel.cpp).
 #pragma once
@@ -24,12 +26,13 @@
 #include "base/test_hooks.hpp"
 #include "boxes/pair_rule.hpp"
 #include "octree/cell_sweep/cell_set.hpp"
+#include "octree/cell_sweep/run_prefetcher.hpp"
 #include "octree/sweep/sweep.hpp"
 
 namespace octopair {
 
-/// Number of rows that are tested together, and of columns that they are tested against at a time.
-inline constexpr std::size_t row_block = 4, column_group = 8;
+/// Number of rows of a self sweep that are tested together, and of columns that they are tested against at a time.
+inline constexpr std::size_t row_block = 4, column_group = 64;
 
 /// Position of a row, and below it that of a column, in 16 bits each.
 using CellHit = std::uint32_t;
@@ -38,22 +41,25 @@ struct CellSweep {
     const CellSet& rows;
     const CellSet& columns;  ///< the set of rows if `kind` is `self`
     SweepKind kind;
+    RunPrefetcher* ahead = nullptr;  ///< prefetches during a self sweep what is read after it, unless null
+
+    /// Number of rows that are tested together.
+    std::size_t block() const { return kind == SweepKind::self ? row_block : 1; }
 };
 
 /// Position at which a sweep continues: the next block of rows, and the next column for this block. Rows before `row` are done.
 struct CellCursor {
     std::size_t row = 0;
     std::size_t column = 0;
-    std::size_t first_column = 0;  ///< cross and cross_strict: first column that `row` is tested against
-    bool in_row = false;           ///< true if `column` is set for `row`
+    bool in_row = false;  ///< true if `column` is set for `row`
 };
 
-/// Minimum room for hits of cell_hits().
-inline constexpr std::size_t min_hit_room = 128;
+/// Minimum room for hits of cell_hits(): a group's, and 64 that SIMD versions may write behind the last hit.
+inline constexpr std::size_t min_hit_room = row_block * column_group + column_group;
 
-/// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` is full, or
-/// after a bounded number of tests. The sweep is done when cursor.row is not below the number of rows.
-/// Requires: `hits` has room for at least min_hit_room.
+/// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` has no room for those of another group. The
+/// sweep is done when cursor.row is not below the number of rows.
+/// Requires: `hits` has room for at least min_hit_room. The sets have planes, which cell_hits_scalar() does not read.
 std::size_t cell_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);
 std::size_t cell_hits_scalar(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);
 
@@ -74,7 +80,7 @@ struct JudgedHits {
 };
 
 /// Number of pairs and positions that may be written behind the last one.
-inline constexpr std::size_t judged_room = 8;
+inline constexpr std::size_t judged_room = 16;
 
 /// Keeps the hits whose entries overlap in all cells and share no flag.
 /// Requires: room for all hits and `judged_room` more, in `judged` and behind the end of `hits`.
@@ -87,31 +93,33 @@ void cell_entries(const OctantCells& cells, std::span<const Entry> entries, Cell
 /// Returns an estimate of the number of columns that a sweep tests, summed over all rows, from rows at fixed positions.
 std::uint64_t sampled_tests(const CellSweep& sweep);
 
-/// Returns the cell that columns must not begin before to be tested against a row; sweeps of two sets. Shared by all versions.
-inline std::uint32_t first_tested(const CellSweep& sweep, std::size_t row) {
-    const unsigned shift = std::max(sweep.rows.bucket_shift(), sweep.columns.bucket_shift());
-    const std::uint32_t bucket = (sweep.rows.first_axis()[row] & 0xFFFFu) >> shift;
-    return (bucket + (sweep.kind == SweepKind::cross_strict ? 1 : 0)) << shift;
-}
+/// The windows of the rows of a sweep: positions [begin(row), end(row)) of columns, none if end() is not above begin(). A row may be one of
+/// the entries behind the last row. Shared by all versions.
+class CellWindows {
+public:
+    explicit CellWindows(const CellSweep& sweep)
+        : rows_(sweep.rows.entries()),
+          begins_(sweep.columns.bucket_begins()),
+          column_shift_(sweep.columns.bucket_shift()),
+          shift_(std::max(sweep.rows.bucket_shift(), column_shift_)),
+          kind_(sweep.kind) {}
 
-/// Moves `cursor` to the first column of its block of rows, unless the cursor is there already. Returns false if no column is
-/// left for these rows and all later rows. Shared by all versions.
-bool start_crossing_rows(const CellSweep& sweep, CellCursor& cursor);
-inline bool start_rows(const CellSweep& sweep, CellCursor& cursor) {
-    if (cursor.in_row) return true;
-    cursor.in_row = true;
-    if (sweep.kind != SweepKind::self) return start_crossing_rows(sweep, cursor);
-    cursor.column = cursor.row + 1;
-    return true;
-}
+    std::size_t begin(std::size_t row) const { return kind_ == SweepKind::self ? row + 1 : begin_crossing(row); }
+    /// Returns begin(row) of a sweep of two sets.
+    std::size_t begin_crossing(std::size_t row) const {
+        const std::uint32_t bucket = (rows_[row].low(0) >> shift_) + (kind_ == SweepKind::cross_strict ? 1 : 0);
+        return begins_[bucket << shift_ >> column_shift_];
+    }
+    std::size_t end(std::size_t row) const {
+        const std::size_t end = begins_[(rows_[row].high(0) >> column_shift_) + 1];
+        return planted(Fault::cell_window_end_open) && end > row + 1 ? end - 1 : end;
+    }
 
-/// Returns the last cell at which columns may begin that a block of rows is tested against. Shared by all versions.
-inline std::uint32_t block_reach(const CellSweep& sweep, std::size_t row) {
-    // The high ends are stored as complements, and rows behind the last one have the greatest complement.
-    std::uint32_t least = 0xFFFF;
-    for (std::size_t r = row; r < row + row_block; ++r) least = std::min(least, sweep.rows.first_axis()[r] >> 16);
-    if (planted(Fault::cell_window_end_open)) return (least ^ 0xFFFFu) - std::min(least ^ 0xFFFFu, 1u);
-    return (least ^ 0xFFFFu) | ((1u << sweep.columns.bucket_shift()) - 1);
-}
+private:
+    const CellEntry* rows_;
+    const std::uint32_t* begins_;
+    unsigned column_shift_, shift_;
+    SweepKind kind_;
+};
 
 }  // namespace octopair

@@ -1,19 +1,18 @@
 // SIMD versions of the functions of cell_sweep.hpp and cell_set.hpp. Highway compiles them for each instruction set.
 //
-// - A register of columns is tested against one row by two saturated subtractions. All hits are written, without a branch on
-//   whether there are any: dense scenes mispredict that branch.
-// - A row first tests a fixed number of registers. So most rows do not mispredict where their columns end.
-// - Hits are judged apart from the sweep, many at once: four entries are turned into four registers of one number each.
+// - A row is tested against 64 columns at once, or 32 if its block needs no more, by four saturated subtractions of bytes. All hits are
+//   written, without a branch on whether there are any: dense scenes mispredict that branch.
+// - Hits are judged apart from the sweep, many at once: the entries of as many hits as a register has lanes are turned into registers of
+//   one number each.
+#define HWY_WANT_AVX3_DL  // AVX-512 with VBMI2, which can move bytes to the front of a register
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "octree/cell_sweep/cell_sweep_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <array>
-#include <bit>
+#include <algorithm>
+#include <cstring>
 
-#include "base/test_hooks.hpp"
-#include "base/tuning.hpp"
 #include "octree/cell_sweep/cell_sweep.hpp"
 #include "octree/simd_lanes-inl.hpp"
 
@@ -37,136 +36,217 @@ void cell_entries_simd(const OctantCells& cells, std::span<const Entry> entries,
     for (const Entry& entry : entries) *out++ = cells.entry(entry);
 }
 
-void place_entries_simd(std::span<const CellEntry> entries, const EntryPlaces& places) {
-    const auto [buckets, next, entries_out, first_axis_out, other_axes_out] = places;
+void write_planes_simd(std::span<const CellEntry> entries, std::uint8_t* planes, std::size_t stride) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        const std::uint32_t at = next[buckets[i]]++;
-        const CellColumn column = column_of(entries[i]);
-        entries_out[at] = entries[i];
-        first_axis_out[at] = column.first_axis;
-        other_axes_out[at] = column.other_axes;
+        const auto bytes = plane_bytes(entries[i]);
+        for (std::size_t k = 0; k < cell_planes; ++k) planes[k * stride + i] = bytes[k];
     }
 }
 
 #else
 
-using Halves = hn::Repartition<std::uint16_t, Words>;
 using SignedHalves = hn::Repartition<std::int16_t, Words>;
-using Bytes = hn::Repartition<std::uint8_t, Words>;
 
-/// A row, turned so that it compares with columns: its ends in exchanged places, and complemented.
-struct TurnedRow {
-    HWY_INLINE TurnedRow(const CellSet& rows, std::size_t row)
-        : first(hn::Set(Words(), std::rotl(~rows.first_axis()[row], 16))),
-          others(hn::Set(Words(), swap_bytes(~rows.other_axes()[row]))),
-          number(hn::Set(Words(), std::uint32_t(row) << 16)) {}
-    static std::uint32_t swap_bytes(std::uint32_t halves) {
-        return (halves & 0x00FF00FFu) << 8 | (halves >> 8 & 0x00FF00FFu);
-    }
-    Lanes first, others, number;
-};
+/// A bit mask of columns.
+template <std::size_t width>
+using ColumnBits = std::conditional_t<(width > 32), std::uint64_t, std::uint32_t>;
 
-/// A register of columns.
-struct Columns {
-    HWY_INLINE Columns(const CellSet& columns, std::size_t column)
-        : first(hn::LoadU(Words(), columns.first_axis() + column)),
-          others(hn::LoadU(Words(), columns.other_axes() + column)),
-          number(hn::Set(Words(), std::uint32_t(column))) {}
-    Lanes first, others, number;
-};
-
-/// Returns the set of columns that overlap a row.
-HWY_INLINE std::uint32_t overlapping(const TurnedRow& row, const Columns& columns) {
-    const Words d;
-    const auto apart0 = hn::SaturatedSub(hn::BitCast(Halves(), columns.first), hn::BitCast(Halves(), row.first));
-    const auto apart1 = hn::SaturatedSub(hn::BitCast(Bytes(), columns.others), hn::BitCast(Bytes(), row.others));
-    const auto apart = hn::Or(hn::BitCast(d, apart0), hn::BitCast(d, apart1));
-    return bits_of(d, hn::Eq(apart, hn::Zero(d)));
+/// Returns the first `count` columns, or all if there are fewer, without a branch.
+template <std::size_t width>
+HWY_INLINE ColumnBits<width> first_columns(std::size_t count) {
+    using Bits = ColumnBits<width>;
+    const Bits bits = Bits(std::min(count, width));
+    return (Bits(1) << (bits % width)) - 1 - bits / width;
 }
 
-/// Which columns count, besides those that overlap: all, or those after the row, or those that do not begin before a cell.
-enum class Asked { all, after_row, from_cell };
-
-/// A block of rows.
-struct RowBlock {
-    TurnedRow rows[row_block];
-    std::uint32_t from[row_block];  ///< by row: for Asked::from_cell
+/// The planes of a set.
+struct Planes {
+    explicit Planes(const CellSet& set)
+        : low1(set.plane(CellPlane::low1)),
+          high1(set.plane(CellPlane::high1)),
+          low2(set.plane(CellPlane::low2)),
+          high2(set.plane(CellPlane::high2)) {}
+    const std::uint8_t *low1, *high1, *low2, *high2;
 };
 
-/// Tests a block of rows against a group of columns. Writes the hits and returns their end.
-template <Asked asked>
-HWY_INLINE CellHit* test_group(const RowBlock& block, const CellSet& set, std::size_t column, CellHit* out) {
-    const Words d;
-    constexpr std::size_t lanes = hn::MaxLanes(d);
-    constexpr std::size_t registers = column_group / lanes;
-    const auto test = [&](std::uint32_t r, const Columns& columns, std::size_t lane) HWY_ATTR {
-        std::uint32_t hits = overlapping(block.rows[r], columns);
-        if constexpr (asked == Asked::after_row) hits &= 0xFFu << r >> lane;
-        if constexpr (asked == Asked::from_cell) {
-            const auto begin = hn::And(columns.first, hn::Set(d, 0xFFFFu));
-            hits &= ~bits_of(d, hn::Lt(begin, hn::Set(d, block.from[r])));
+/// Adjacent columns, as many as a group has or fewer.
+template <std::size_t width>
+class Columns {
+public:
+    HWY_INLINE Columns(const Planes& planes, std::size_t first) {
+        for (std::size_t i = 0; i < registers; ++i, first += lanes) {
+            low1_[i] = hn::LoadU(D(), planes.low1 + first), high1_[i] = hn::LoadU(D(), planes.high1 + first);
+            low2_[i] = hn::LoadU(D(), planes.low2 + first), high2_[i] = hn::LoadU(D(), planes.high2 + first);
         }
-        // All lanes are stored. The next store overwrites the lanes beyond the hits.
-        hn::StoreU(hn::Add(lane_numbers(lanes_in.of[hits]), hn::Add(columns.number, block.rows[r].number)), d, out);
-        out += std::popcount(hits);
+    }
+    /// Returns the columns that overlap a row.
+    HWY_INLINE ColumnBits<width> overlapping(const Planes& rows, std::size_t row) const {
+        const auto low1 = hn::Set(D(), rows.low1[row]), high1 = hn::Set(D(), rows.high1[row]);
+        const auto low2 = hn::Set(D(), rows.low2[row]), high2 = hn::Set(D(), rows.high2[row]);
+        ColumnBits<width> hits = 0;
+        for (std::size_t i = 0; i < registers; ++i) {
+            const auto apart1 = hn::Or(hn::SaturatedSub(low1_[i], high1), hn::SaturatedSub(low1, high1_[i]));
+            const auto apart2 = hn::Or(hn::SaturatedSub(low2_[i], high2), hn::SaturatedSub(low2, high2_[i]));
+            const auto hit = hn::Eq(hn::Or(apart1, apart2), hn::Zero(D()));
+            hits |= ColumnBits<width>(bits_of(D(), hit)) << (i * lanes);
+        }
+        return hits;
+    }
+
+private:
+    using D = hn::CappedTag<std::uint8_t, width>;
+    static constexpr std::size_t lanes = hn::MaxLanes(D()), registers = width / lanes;
+    hn::Vec<D> low1_[registers], high1_[registers], low2_[registers], high2_[registers];
+};
+
+/// Writes `first` + k for each bit k of a set, ascending. Returns their end. May write column_group numbers, of which the next call overwrites
+/// those behind the end.
+#if HWY_TARGET <= HWY_AVX3_DL
+
+template <std::size_t width>
+HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* out) {
+    const hn::CappedTag<std::uint8_t, width> bytes;
+    const hn::CappedTag<std::uint32_t, width / 4> d;
+    const hn::Half<decltype(bytes)> half;
+    const hn::Half<decltype(half)> quarter;
+    alignas(64) static constexpr std::uint8_t numbers[64] = {
+        0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+        22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
+        44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+    std::uint8_t mask[8] = {};
+    std::memcpy(mask, &set, sizeof(set));
+    const auto columns = hn::Compress(hn::Load(bytes, numbers), hn::LoadMaskBits(bytes, mask));
+    const auto store = [&](std::size_t k, auto some) HWY_ATTR {
+        hn::StoreU(hn::Add(hn::PromoteTo(d, some), hn::Set(d, first)), d, out + k * hn::Lanes(d));
     };
-    if constexpr (registers == 1) {
-        const Columns columns(set, column);
-        for (std::uint32_t r = 0; r < row_block; ++r) test(r, columns, 0);
-    } else {
-        for (std::uint32_t r = 0; r < row_block; ++r) {
-            for (std::size_t lane = 0; lane < column_group; lane += lanes) test(r, Columns(set, column + lane), lane);
-        }
+    const auto lower = hn::LowerHalf(half, columns);
+    store(0, hn::LowerHalf(quarter, lower));
+    const std::size_t count = hwy::PopCount(set);
+    if (HWY_UNLIKELY(count > hn::Lanes(d))) {
+        const auto upper = hn::UpperHalf(half, columns);
+        store(1, hn::UpperHalf(quarter, lower));
+        store(2, hn::LowerHalf(quarter, upper));
+        store(3, hn::UpperHalf(quarter, upper));
+    }
+    return out + count;
+}
+
+#elif HWY_TARGET <= HWY_AVX3
+
+template <std::size_t width>
+HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* out) {
+    for (std::size_t k = 0; k < width; k += hn::Lanes(Words())) {
+        const auto some = std::uint32_t(set >> k) & 0xFFFFu;
+        const auto numbers = hn::Add(lane_numbers(), hn::Set(Words(), first + std::uint32_t(k)));
+        hn::StoreU(LanesToFront(some)(numbers), Words(), out);
+        out += hwy::PopCount(some);
     }
     return out;
 }
 
-static_assert(CellSet::padding >= row_block + column_group);
-static_assert(min_hit_room >= row_block * column_group + LaneTable::lanes);
+#else
 
-template <bool self>
-std::size_t cell_hits_of(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
-    constexpr Asked usual = self ? Asked::all : Asked::from_cell;
-    const std::uint32_t* const first = sweep.columns.first_axis();
+template <std::size_t width>
+HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* out) {
+    const hn::Rebind<std::uint8_t, Words> bytes;
+    for (std::size_t k = 0; k < width; k += LaneTable::lanes) {
+        const std::size_t some = set >> k & 0xFFu;
+        const auto base = hn::Set(Words(), first + std::uint32_t(k));
+        for (std::size_t lane = 0; lane < LaneTable::lanes; lane += hn::Lanes(Words())) {
+            const auto columns = hn::PromoteTo(Words(), hn::LoadU(bytes, lanes_in.of[some].data() + lane));
+            hn::StoreU(hn::Add(columns, base), Words(), out + lane);
+        }
+        out += lanes_in.count[some];
+    }
+    return out;
+}
+
+#endif
+
+static_assert(CellSet::bytes_read_beyond >= column_group);
+
+/// Rows of a self sweep are tested in blocks.
+std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+    constexpr std::size_t narrow = 32;
+    const CellWindows windows(sweep);
+    const Planes planes(sweep.rows);
+    const std::size_t rows = sweep.rows.size();
     CellHit* at = hits.data();
-    CellHit* const last = hits.data() + (hits.size() - row_block * column_group - LaneTable::lanes);
-    std::size_t groups_left = tuning().sweep.tests_per_call;
-    for (; cursor.row < sweep.rows.size(); cursor.row += row_block, cursor.in_row = false) {
-        const std::size_t row = cursor.row;
-        const bool begins = !cursor.in_row;
-        if (!start_rows(sweep, cursor)) {
-            cursor.row = sweep.rows.size();
-            break;
+    CellHit* const last = hits.data() + (hits.size() - min_hit_room);
+    auto [row, base, in_row] = cursor;
+    RunPrefetcher ahead = sweep.ahead == nullptr ? RunPrefetcher() : *sweep.ahead;  // a copy stays in registers
+    for (; row < rows && at <= last; row += row_block, in_row = false) {
+        const std::size_t ends[row_block] = {windows.end(row), windows.end(row + 1), windows.end(row + 2),
+                                             windows.end(row + 3)};
+        const std::size_t most = std::max(std::max(ends[0], ends[1]), std::max(ends[2], ends[3]));
+        const auto hit = [&](std::size_t r) { return CellHit((row + r) << 16 | base); };
+        if (!in_row) {
+            ahead.fetch_line();
+            base = row + 1;
+            // Row r is tested against the columns from its successor on, which is number r from `base` on.
+            const auto test_first = [&]<std::size_t width>() HWY_ATTR {
+                const Columns<width> columns(planes, base);
+                for (std::size_t r = 0; r < row_block; ++r) {
+                    const auto asked = first_columns<width>(ends[r] - base) & (~ColumnBits<width>(0) << r);
+                    at = write_hits<width>(columns.overlapping(planes, row + r) & asked, hit(r), at);
+                }
+            };
+            if (most - base <= narrow) {
+                test_first.template operator()<narrow>();
+                continue;
+            }
+            test_first.template operator()<column_group>();
+            base += column_group;
         }
-        const auto turned = [&](std::size_t r) HWY_ATTR { return TurnedRow(sweep.rows, row + r); };
-        RowBlock block = {{turned(0), turned(1), turned(2), turned(3)}, {}};
-        for (std::size_t r = 0; !self && r < row_block; ++r) block.from[r] = first_tested(sweep, row + r);
-        const std::uint32_t reach = block_reach(sweep, row);
-        std::size_t column = cursor.column;
-        if (self && begins && at <= last) {
-            at = test_group<Asked::after_row>(block, sweep.columns, column, at);
-            column += column_group;
+        for (; base < most && at <= last; base += column_group) {
+            const Columns<column_group> columns(planes, base);
+            for (std::size_t r = 0; r < row_block; ++r) {
+                const auto asked = first_columns<column_group>(std::max(ends[r], base) - base);
+                at = write_hits<column_group>(columns.overlapping(planes, row + r) & asked, hit(r), at);
+            }
         }
-        for (; (first[column] & 0xFFFFu) <= reach && at <= last && groups_left > 0; column += column_group) {
-            --groups_left;
-            at = test_group<usual>(block, sweep.columns, column, at);
-        }
-        if (at > last || groups_left == 0) {
-            cursor.column = column;
+        if (base < most) {
+            in_row = true;
             break;
         }
     }
+    if (row >= rows) ahead.fetch_rest();
+    if (sweep.ahead != nullptr) *sweep.ahead = ahead;
+    cursor = {row, base, in_row};
+    return std::size_t(at - hits.data());
+}
+
+std::size_t cross_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+    const CellWindows windows(sweep);
+    const Planes row_planes(sweep.rows), column_planes(sweep.columns);
+    const std::size_t rows = sweep.rows.size();
+    CellHit* at = hits.data();
+    CellHit* const last = hits.data() + (hits.size() - min_hit_room);
+    auto [row, base, in_row] = cursor;
+    for (; row < rows; ++row, in_row = false) {
+        const std::size_t end = windows.end(row);
+        if (!in_row) base = windows.begin_crossing(row);
+        for (; base < end && at <= last; base += column_group) {
+            const Columns<column_group> columns(column_planes, base);
+            const auto asked = first_columns<column_group>(end - base);
+            at = write_hits<column_group>(columns.overlapping(row_planes, row) & asked, CellHit(row << 16 | base), at);
+        }
+        if (base < end) {
+            in_row = true;
+            break;
+        }
+    }
+    cursor = {row, base, in_row};
     return std::size_t(at - hits.data());
 }
 
 std::size_t cell_hits_simd(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
-    return sweep.kind == SweepKind::self ? cell_hits_of<true>(sweep, cursor, hits)
-                                         : cell_hits_of<false>(sweep, cursor, hits);
+    return sweep.kind == SweepKind::self ? self_hits(sweep, cursor, hits) : cross_hits(sweep, cursor, hits);
 }
 
-/// Loads the entries at some positions: register i gets number i of all entries.
-HWY_INLINE void load_entries(const CellEntry* entries, const std::uint32_t* positions, Lanes (&registers)[4]) {
-    load_items(registers, [&](std::size_t i) { return entries[positions[i]].ends.data(); });
+/// Loads the entries at some positions, one in every second number from `at` on: register i gets number i of all entries.
+HWY_INLINE void load_entries(const CellEntry* entries, const std::uint16_t* at, Lanes (&registers)[4]) {
+    load_items(registers, [&](std::size_t i) { return entries[at[2 * i]].ends.data(); });
 }
 
 void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const CertainGaps& gaps, JudgedHits& judged) {
@@ -180,20 +260,10 @@ void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const Cert
     Pair* pairs = judged.pairs + judged.pair_count;
     std::uint32_t* doubtful = judged.doubtful + judged.doubtful_count;
     for (std::size_t i = 0; i < hits.size(); i += lanes) {
-        alignas(32) std::uint32_t row_at[LaneTable::lanes], column_at[LaneTable::lanes];
-        const auto hit = hn::LoadU(d, hits.data() + i);
-        const auto row_of = hn::ShiftRight<16>(hit);
-        hn::Store(row_of, d, row_at);
-        hn::Store(hn::And(hit, hn::Set(d, 0xFFFFu)), d, column_at);
         Lanes rows[4], columns[4];
-        if (hn::AllTrue(d, hn::Eq(row_of, hn::Set(d, row_at[0])))) {
-            const CellEntry& row = sweep.rows.entries()[row_at[0]];
-            for (std::size_t k = 0; k < 3; ++k) rows[k] = hn::Set(d, row.ends[k]);
-            rows[3] = hn::Set(d, row.object);
-        } else {
-            load_entries(sweep.rows.entries(), row_at, rows);
-        }
-        load_entries(sweep.columns.entries(), column_at, columns);
+        const auto* const positions = reinterpret_cast<const std::uint16_t*>(hits.data() + i);
+        load_entries(sweep.rows.entries(), positions + 1, rows);
+        load_entries(sweep.columns.entries(), positions, columns);
         auto apart = hn::Zero(d), doubts = none_certain;
         for (std::size_t k = 0; k < 3; ++k) {
             // Lower half: row's low - column's high. Upper half: row's high - column's low. Negated where it is a depth.
@@ -204,21 +274,20 @@ void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const Cert
             apart = hn::Or(apart, hn::Or(hn::BitCast(d, depth), hn::And(rows[k], columns[k])));
             doubts = hn::Or(doubts, hn::BitCast(d, over));
         }
-        const std::size_t left = hits.size() - i;
-        const std::uint32_t live = left >= lanes ? 0xFFu : (1u << left) - 1;
-        const std::uint32_t kept = bits_of(d, hn::Eq(hn::And(apart, flags), hn::Zero(d))) & live;
-        const auto order = to_front(kept);
-        const auto lower_object = hn::Min(rows[3], columns[3]), higher_object = hn::Max(rows[3], columns[3]);
-        hn::StoreInterleaved2(hn::TableLookupLanes(lower_object, order), hn::TableLookupLanes(higher_object, order), d,
-                              reinterpret_cast<std::uint32_t*>(pairs));
-        const std::uint32_t asked = bits_of(d, hn::Ne(hn::And(doubts, flags), hn::Zero(d))) & kept;
-        if (asked != 0) {
-            const auto base = hn::Set(d, std::uint32_t(pairs - judged.pairs));
-            const auto positions = hn::Add(lane_numbers(lanes_in.rank[kept]), base);
-            hn::StoreU(hn::TableLookupLanes(positions, to_front(asked)), d, doubtful);
-            doubtful += lanes_in.count[asked];
+        const auto none = [&](auto numbers)
+                              HWY_ATTR { return bits_of(d, hn::Eq(hn::And(numbers, flags), hn::Zero(d))); };
+        const std::uint32_t kept = none(apart) & first_lanes(hits.size() - i);
+        const LanesToFront kept_to_front(kept);
+        hn::StoreInterleaved2(kept_to_front(hn::Min(rows[3], columns[3])), kept_to_front(hn::Max(rows[3], columns[3])),
+                              d, reinterpret_cast<std::uint32_t*>(pairs));
+        const std::size_t count = hwy::PopCount(kept);
+        if ((~none(doubts) & kept) != 0) {
+            const std::uint32_t asked = ~none(kept_to_front(doubts)) & first_lanes(count);
+            const auto numbers = hn::Add(lane_numbers(), hn::Set(d, std::uint32_t(pairs - judged.pairs)));
+            hn::StoreU(LanesToFront(asked)(numbers), d, doubtful);
+            doubtful += hwy::PopCount(asked);
         }
-        pairs += lanes_in.count[kept];
+        pairs += count;
     }
     judged.pair_count = std::size_t(pairs - judged.pairs);
     judged.doubtful_count = std::size_t(doubtful - judged.doubtful);
@@ -264,27 +333,21 @@ void cell_entries_simd(const OctantCells& cells, std::span<const Entry> entries,
     cells.is_deep() ? cell_entries_of<true>(cells, entries, out) : cell_entries_of<false>(cells, entries, out);
 }
 
-void place_entries_simd(std::span<const CellEntry> entries, const EntryPlaces& places) {
-    const hn::FixedTag<std::uint32_t, 4> words;
-    const hn::FixedTag<std::uint16_t, 8> halves;
-    const hn::FixedTag<std::uint8_t, 16> bytes;
-    alignas(16) constexpr std::uint8_t chosen[16] = {0, 1, 2, 3, 4, 6, 8, 10, 0, 0, 0, 0, 0, 0, 0, 0};
-    alignas(16) constexpr std::uint8_t turned[16] = {0, 0, 0xFF, 0xFF, 0, 0xFF, 0, 0xFF, 0, 0, 0, 0, 0, 0, 0, 0};
-    alignas(16) constexpr std::uint16_t first_axis_bits[8] = {0xFFFF, 0xFFFF, 0, 0, 0, 0, 0, 0};
-    const auto order = hn::Load(bytes, chosen), complement = hn::Load(bytes, turned);
-    const auto first_axis = hn::Load(halves, first_axis_bits);
-    const auto [buckets, next, entries_out, first_axis_out, other_axes_out] = places;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        const std::uint32_t at = next[buckets[i]]++;
-        const auto entry = hn::Load(words, entries[i].ends.data());
-        hn::Store(entry, words, entries_out[at].ends.data());
-        const auto cells = hn::BitCast(halves, hn::And(entry, hn::Set(words, CellEntry::end_bits)));
-        const auto mixed = hn::IfVecThenElse(first_axis, cells, hn::ShiftRight<cell_bits - 8>(cells));
-        const auto column = hn::Xor(hn::TableLookupBytes(hn::BitCast(bytes, mixed), order), complement);
-        const auto pair = hn::BitCast(hn::FixedTag<std::uint64_t, 2>(), column);
-        const std::uint64_t both = hn::GetLane(pair);
-        first_axis_out[at] = std::uint32_t(both);
-        other_axes_out[at] = std::uint32_t(both >> 32);
+void write_planes_simd(std::span<const CellEntry> entries, std::uint8_t* planes, std::size_t stride) {
+    const Words d;
+    const hn::Rebind<std::uint8_t, Words> bytes;
+    constexpr int dropped_bits = cell_bits - 8;
+    for (std::size_t i = 0; i < entries.size(); i += hn::Lanes(d)) {
+        Lanes words[4];
+        load_items(words, [&](std::size_t k) { return entries[i + k].ends.data(); });
+        const auto store = [&](CellPlane end, Lanes cells) HWY_ATTR {
+            const auto low_byte = hn::And(cells, hn::Set(d, 0xFFu));
+            hn::StoreU(hn::U8FromU32(low_byte), bytes, planes + std::size_t(end) * stride + i);
+        };
+        store(CellPlane::low1, hn::ShiftRight<dropped_bits>(words[1]));
+        store(CellPlane::high1, hn::ShiftRight<16 + dropped_bits>(words[1]));
+        store(CellPlane::low2, hn::ShiftRight<dropped_bits>(words[2]));
+        store(CellPlane::high2, hn::ShiftRight<16 + dropped_bits>(words[2]));
     }
 }
 
@@ -301,7 +364,7 @@ namespace octopair {
 HWY_EXPORT(cell_hits_simd);
 HWY_EXPORT(judge_hits_simd);
 HWY_EXPORT(cell_entries_simd);
-HWY_EXPORT(place_entries_simd);
+HWY_EXPORT(write_planes_simd);
 
 std::size_t cell_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
     return HWY_DYNAMIC_DISPATCH(cell_hits_simd)(sweep, cursor, hits);
@@ -315,8 +378,8 @@ void cell_entries(const OctantCells& cells, std::span<const Entry> entries, Cell
     HWY_DYNAMIC_DISPATCH(cell_entries_simd)(cells, entries, out);
 }
 
-void place_entries(std::span<const CellEntry> entries, const EntryPlaces& places) {
-    HWY_DYNAMIC_DISPATCH(place_entries_simd)(entries, places);
+void write_planes(std::span<const CellEntry> entries, std::uint8_t* planes, std::size_t stride) {
+    HWY_DYNAMIC_DISPATCH(write_planes_simd)(entries, planes, stride);
 }
 
 }  // namespace octopair

@@ -31,7 +31,7 @@ void BatchEncoder::encode_scalar(std::span<const Entry> entries, EncodedBatch& b
 }
 
 void BatchEncoder::ghosts_scalar(CrosserRange crossers, GhostGroup& group) {
-    group.present = {};
+    group.counts = {};
     group.left_out = (1u << crossers.count) - 1;
 }
 

@@ -29,10 +29,12 @@ struct CrosserRange {
 
 /// The ghosts of a few crossers.
 struct GhostGroup {
-    static constexpr std::size_t most = 8, corners = 7;
-    alignas(64) std::array<std::array<CellEntry, most>, corners> entries;  ///< by corner of the box and crosser
-    std::array<std::array<std::uint32_t, most>, corners> octants;
-    std::array<std::uint8_t, corners> present;  ///< by corner: bit mask of the crossers that have this ghost
+    static constexpr std::size_t most = 16, slots = 8;
+    // Arrays by crosser and slot: those of crosser k begin at slots * k. A crosser has at most 7 ghosts, in the order of the box's corners.
+    alignas(64) std::array<CellEntry, most * slots> entries;
+    std::array<std::uint32_t, most * slots> octants;
+    alignas(64)
+        std::array<std::uint32_t, most> counts;  ///< number of ghosts of each crosser; unspecified for those left out
     /// Bit mask of the crossers whose ghosts the caller must find by the general rule (octants_of.hpp). A leaf is deep or finer than the
     /// home leaf, or the box is too large for its home leaf.
     std::uint32_t left_out;

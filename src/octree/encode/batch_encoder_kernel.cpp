@@ -31,19 +31,12 @@ void ghosts_simd(const BatchEncoder&, const EncodedBatch&, CrosserRange crossers
 
 #else
 
-/// Stores the entries of a register's lanes, given as registers of one number each.
-template <typename D>
-HWY_INLINE void store_entries(D d, Lanes (&numbers)[4], CellEntry* out) {
+/// Stores the entries of a register's lanes, given as registers of one number each. at(i): place of entry i.
+template <typename At>
+HWY_INLINE void store_entries(Lanes (&numbers)[4], const At& at) {
     transpose(numbers);
     for (std::size_t i = 0; i < 4; ++i) {
-        const hn::Vec<D> blocks = numbers[i];
-        if constexpr (hn::MaxLanes(D()) == 8) {
-            const hn::Half<D> block;
-            hn::Store(hn::LowerHalf(block, blocks), block, out[i].ends.data());
-            hn::Store(hn::UpperHalf(block, blocks), block, out[i + 4].ends.data());
-        } else {
-            hn::Store(blocks, d, out[i].ends.data());
-        }
+        store_blocks(Words(), numbers[i], i, [&](std::size_t k) { return at(k).ends.data(); });
     }
 }
 
@@ -117,7 +110,7 @@ bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, cons
         hn::StoreU(list, d, batch.lists.data() + i);
         Lanes words[4];
         home_entries<std::is_same_v<Item, Entry>>(encoder, box, at, words);
-        store_entries(d, words, batch.homes.data() + i);
+        store_entries(words, [&](std::size_t k) -> CellEntry& { return batch.homes[i + k]; });
         append_crossers(at, i, reader.live(i), batch);
     }
     return reader.all_valid();
@@ -141,7 +134,6 @@ HWY_INLINE void ghosts_of_lanes(const GhostSource& source, CrosserRange crossers
     const std::size_t begin = crossers.begin;
     const std::uint32_t live = (1u << crossers.count) - 1;
     const Words d;
-    const hn::RebindToSigned<Words> indices;
     const Constants constants(encoder.locator);
     Lanes low[3], high[3];
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -158,57 +150,51 @@ HWY_INLINE void ghosts_of_lanes(const GhostSource& source, CrosserRange crossers
                                         hn::ShiftRight<SpaceMap::fine_bits>(low[axis])));
     }
     std::uint32_t left_out = bits_of(d, hn::Gt(extent, hn::ShiftRight<SpaceMap::fine_bits>(offsets))) & live;
-    Lanes leaf_at[GhostGroup::corners];
-    std::uint32_t present[GhostGroup::corners];
-    for (unsigned corner = 1; corner <= GhostGroup::corners; ++corner) {
-        std::uint32_t& has = present[corner - 1];
-        has = live & ~left_out;
+    Lanes homes[4];
+    load_items(homes, [&](std::size_t i) { return batch.homes[batch.crosser[begin + i]].ends.data(); });
+    const auto flags = hn::Set(d, CellEntry::flag_bits),
+               finest = hn::Min(level, hn::Set(d, OctantCells::max_fine_level));
+    alignas(64) std::uint32_t slots[max_lanes], octants[max_lanes];
+    const auto first_slot = hn::ShiftLeft<3>(hn::Add(lane_numbers(), hn::Set(d, std::uint32_t(lane))));
+    static_assert(GhostGroup::slots == 1 << 3);
+    hn::Store(first_slot, d, slots);
+    for (unsigned corner = 1; corner < GhostGroup::slots; ++corner) {
+        std::uint32_t has = live & ~left_out;
         for (unsigned axis = 0; axis < 3; ++axis) has &= corner >> axis & 1u ? crossed[axis] : ~0u;
         if (has == 0) continue;
         const auto end = [&](unsigned axis) HWY_ATTR { return corner >> axis & 1u ? high[axis] : low[axis]; };
-        leaf_at[corner - 1] = constants.leaves(end(0), end(1), end(2));
-        const auto finest = hn::Min(level, hn::Set(d, OctantCells::max_fine_level));
-        left_out |= bits_of(d, hn::Gt(level_of(leaf_at[corner - 1]), finest)) & has;
-    }
-    const auto home = hn::ShiftLeft<2>(hn::LoadU(d, batch.crosser.data() + begin));
-    const std::uint32_t* const homes = batch.homes[0].ends.data();
-    const auto of_home = [&](std::uint32_t word) HWY_ATTR {
-        return hn::GatherIndex(d, homes, hn::BitCast(indices, hn::Add(home, hn::Set(d, word))));
-    };
-    const auto flags = hn::Set(d, CellEntry::flag_bits);
-    const Lanes brought[3] = {hn::And(of_home(0), flags), hn::And(of_home(1), flags), hn::And(of_home(2), flags)};
-    const auto object = of_home(3);
-    for (unsigned corner = 1; corner <= GhostGroup::corners; ++corner) {
-        std::uint32_t has = present[corner - 1] & ~left_out;
-        if (has != 0) {
-            const auto corner_leaf = leaf_at[corner - 1];
-            const auto corner_level = level_of(corner_leaf), in_corner = offset_bits(corner_level);
-            Lanes words[4];
-            for (unsigned k = 0; k < 3; ++k) {
-                const unsigned axis = encoder.axes[k];
-                if (corner >> axis & 1u) {  // the octant holds the high end
-                    const auto first = hn::AndNot(in_corner, high[axis]);
-                    has &= bits_of(d, hn::Lt(low[axis], first));
-                    words[k] = hn::Or(hn::Set(d, 1u << 15), hn::ShiftLeft<16>(octant_cells(high[axis], corner_level)));
-                } else {
-                    const auto end = hn::Min(high[axis], hn::Or(low[axis], in_corner));
-                    words[k] = hn::Or(octant_cells(low[axis], corner_level),
-                                      hn::ShiftLeft<16>(octant_cells(end, corner_level)));
-                }
-                words[k] = hn::Or(words[k], brought[k]);
+        const auto corner_leaf = constants.leaves(end(0), end(1), end(2));
+        const auto corner_level = level_of(corner_leaf), in_corner = offset_bits(corner_level);
+        left_out |= bits_of(d, hn::Gt(corner_level, finest)) & has;
+        has &= ~left_out;
+        Lanes words[4];
+        for (unsigned k = 0; k < 3; ++k) {
+            const unsigned axis = encoder.axes[k];
+            if (corner >> axis & 1u) {  // the octant holds the high end
+                has &= bits_of(d, hn::Lt(low[axis], hn::AndNot(in_corner, high[axis])));
+                words[k] = hn::Or(hn::Set(d, 1u << 15), hn::ShiftLeft<16>(octant_cells(high[axis], corner_level)));
+            } else {
+                const auto last = hn::Min(high[axis], hn::Or(low[axis], in_corner));
+                words[k] =
+                    hn::Or(octant_cells(low[axis], corner_level), hn::ShiftLeft<16>(octant_cells(last, corner_level)));
             }
-            words[3] = object;
-            store_entries(d, words, group.entries[corner - 1].data() + lane);
-            hn::StoreU(octant_of(corner_leaf), d, group.octants[corner - 1].data() + lane);
+            words[k] = hn::Or(words[k], hn::And(homes[k], flags));
         }
-        group.present[corner - 1] = std::uint8_t(group.present[corner - 1] | has << lane);
+        words[3] = homes[3];
+        // Every crosser's slot is written. It is kept if the crosser has the ghost, and overwritten otherwise.
+        store_entries(words, [&](std::size_t i) -> CellEntry& { return group.entries[slots[i]]; });
+        hn::Store(octant_of(corner_leaf), d, octants);
+        for (std::size_t i = 0; i < hn::Lanes(d); ++i) {
+            group.octants[slots[i]] = octants[i];
+            slots[i] += has >> i & 1u;
+        }
     }
+    hn::Store(hn::Sub(hn::Load(d, slots), first_slot), d, group.counts.data() + lane);
     group.left_out |= left_out << lane;
 }
 
 void ghosts_simd(const BatchEncoder& encoder, const EncodedBatch& batch, CrosserRange crossers, GhostGroup& group) {
     const std::size_t lanes = hn::Lanes(Words());
-    group.present = {};
     group.left_out = 0;
     for (std::size_t lane = 0; lane < crossers.count; lane += lanes) {
         const CrosserRange some{crossers.begin + lane, std::min(crossers.count - lane, lanes)};

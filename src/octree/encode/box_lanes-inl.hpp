@@ -130,7 +130,7 @@ HWY_INLINE Loaded load_lanes(const Box3f* boxes, std::uint32_t object) {
         loaded.high[axis] = hn::BitCast(floats, second[axis + 1]);
     }
     loaded.mask = hn::Zero(d);
-    loaded.object = hn::Iota(d, object);
+    loaded.object = hn::Add(lane_numbers(), hn::Set(d, object));
     return loaded;
 }
 
@@ -248,38 +248,35 @@ public:
         const Words d;
         const std::size_t left = items_.size() - i;
         if (HWY_LIKELY(left >= hn::Lanes(d))) return hn::LoadU(d, numbers + i);
-        alignas(64) std::array<std::uint32_t, LaneTable::lanes> last = {};
+        alignas(64) std::array<std::uint32_t, max_lanes> last = {};
         std::copy_n(numbers + i, left, last.begin());
         return hn::Load(d, last.data());
     }
     /// Returns a bit mask of the lanes that hold an item, from item `i` on.
-    HWY_INLINE std::uint32_t live(std::size_t i) const {
-        const std::size_t left = items_.size() - i;
-        return left >= hn::Lanes(Words()) ? 0xFFu : (1u << left) - 1;
-    }
+    HWY_INLINE std::uint32_t live(std::size_t i) const { return first_lanes(items_.size() - i); }
     HWY_INLINE bool all_valid() const { return hn::AllTrue(Floats(), valid_); }
 
 private:
     std::span<const Item> items_;
     hn::Mask<Floats> valid_;
-    alignas(64) std::array<Item, LaneTable::lanes> rest_;
+    alignas(64) std::array<Item, max_lanes> rest_;
 };
 
 /// Appends the boxes of a register that reach beyond their leaf. `i`: position of the first box in the batch.
 HWY_INLINE void append_crossers(const Located& at, std::size_t i, std::uint32_t live, CrosserBatch& batch) {
     const Words d;
     const std::uint32_t crossing = bits_of(d, at.crosses()) & live;
-    const auto order = to_front(crossing);
+    const LanesToFront to_front(crossing);
     const std::size_t crossers = batch.crossers;
     const auto store = [&](const Lanes& numbers, std::uint32_t* out)
-                           HWY_ATTR { hn::StoreU(hn::TableLookupLanes(numbers, order), d, out + crossers); };
-    store(hn::Iota(d, std::uint32_t(i)), batch.crosser.data());
+                           HWY_ATTR { hn::StoreU(to_front(numbers), d, out + crossers); };
+    store(hn::Add(lane_numbers(), hn::Set(d, std::uint32_t(i))), batch.crosser.data());
     store(at.leaf, batch.leaf.data());
     for (unsigned axis = 0; axis < 3; ++axis) {
         store(at.low[axis], batch.low[axis].data());
         store(at.high[axis], batch.high[axis].data());
     }
-    batch.crossers = crossers + lanes_in.count[crossing];
+    batch.crossers = crossers + hwy::PopCount(crossing);
 }
 
 #endif

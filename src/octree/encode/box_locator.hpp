@@ -19,7 +19,7 @@ inline constexpr std::size_t max_encoded = 256;  ///< maximum number of boxes in
 
 /// The crossers of a batch: boxes that reach beyond the leaf that they begin in. All arrays but the counter are by crosser.
 struct CrosserBatch {
-    static constexpr std::size_t room = max_encoded + 8;  ///< SIMD versions write a few numbers behind the last one
+    static constexpr std::size_t room = max_encoded + 16;  ///< SIMD versions write a few numbers behind the last one
 
     std::size_t crossers = 0;
     /// Initialised, because SIMD versions read a few numbers behind the last one.

@@ -91,9 +91,9 @@ private:
                 }
                 count_path(Path::ghost_entries);
                 const CellEntry& home = batch_.homes[batch_.crosser[first + k]];
-                for (std::size_t corner = 0; corner < GhostGroup::corners; ++corner) {
-                    if ((group.present[corner] >> k & 1u) == 0) continue;
-                    append_ghost(ghosts + group.octants[corner][k], group.entries[corner][k], home);
+                const std::size_t begin = GhostGroup::slots * k, end = begin + group.counts[k];
+                for (std::size_t at = begin; at < end; ++at) {
+                    append_ghost(ghosts + group.octants[at], group.entries[at], home);
                 }
             }
         }
@@ -132,7 +132,7 @@ private:
     BatchEncoder encoder_;
     Writer writer_;
     EncodedBatch batch_;
-    PlainBoxes plain_;                       // boxes of the batch, or none
+    PlainBoxes plain_;  // boxes of the batch, or none
     std::array<Entry, max_encoded> loaded_;  // entries of the batch, unless plain_ has its boxes
 };
 
