@@ -45,7 +45,7 @@ namespace octopair {
     path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell) \
     path(unit_of_leaf) path(unit_of_inner) \
     /* engine/ */ \
-    path(list_block_full) path(sparse_bucket_sorted) path(bucket_sorted) path(bucket_split) path(long_row_sorted) \
+    path(list_block_full) path(sparse_bucket_sorted) path(bucket_sorted) path(bucket_in_slots) path(bucket_split) path(long_row_sorted) \
     path(row_in_bitmap) path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote) \
     path(stream_lead_held) path(stream_lead_full) path(stream_helper_full) path(radix_sorted) \
     /* engine/processes/ */ \

@@ -35,6 +35,7 @@ BucketPlan::BucketPlan(const AscendingBounds& bounds, unsigned fillers) : keys_(
 namespace {
 
 constexpr std::size_t columns_read_beyond = 16;  // by sort_rows()
+static_assert(SlottedRows::read_beyond >= columns_read_beyond);
 
 /// Requires: the strings are not all empty.
 const Pair& first_pair(const std::vector<PageString>& strings) {
@@ -57,6 +58,14 @@ public:
     void wrote(std::size_t pairs) {
         used_ += pairs;
         if (used_ == page_pairs()) finish();
+    }
+    void copy(std::span<const Pair> pairs) {
+        while (!pairs.empty()) {
+            const auto part = pairs.first(std::min(pairs.size(), left()));
+            std::ranges::copy(part, next());
+            wrote(part.size());
+            pairs = pairs.subspan(part.size());
+        }
     }
     void finish() {
         if (used_ > 0) runs_.emplace_back(page_, used_);
@@ -99,7 +108,9 @@ void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, CallStat
     }
     const unsigned row_bits = bits - std::min(bits, plan_.keys().column_bits());
     if (size << tuning().output.sparse_row_bits >> row_bits == 0) return sort_sparse(strings, state);
-    sort_rows_at_once(strings, bits, state);
+    const std::size_t most_in_slots =
+        std::min(tuning().output.slotted_pairs_per_row << row_bits, SlottedRows::max_pairs);
+    size <= most_in_slots ? sort_in_slots(strings, bits, state) : sort_rows_at_once(strings, bits, state);
 }
 
 void BucketSort::split(std::vector<PageString>&& strings, unsigned bits, CallState& state) {
@@ -134,13 +145,67 @@ void BucketSort::sort_sparse(const std::vector<PageString>& strings, CallState& 
     }
     std::ranges::sort(sparse_, {}, [&](const Pair& pair) { return plan_.keys().key(pair); });
     PageWriter writer(pages_, state.sorted);
-    for (std::span<const Pair> left = sparse_; !left.empty();) {
-        const auto part = left.first(std::min(left.size(), writer.left()));
-        std::ranges::copy(part, writer.next());
-        writer.wrote(part.size());
-        left = left.subspan(part.size());
-    }
+    writer.copy(sparse_);
     writer.finish();
+}
+
+/// Sorts pairs of rows that mostly have few pairs.
+void BucketSort::sort_in_slots(const std::vector<PageString>& strings, unsigned bits, CallState& state) {
+    count_path(Path::bucket_in_slots);
+    const PairKeys& keys = plan_.keys();
+    const std::size_t rows = std::size_t(1) << (bits - std::min(bits, keys.column_bits()));
+    const std::uint64_t first_row = keys.first_row() + (keys.row(first_pair(strings)) & ~(rows - 1));
+    slotted_.reset(rows, size_of(strings), std::uint32_t(first_row));
+    for (const PageString& string : strings) {
+        for (std::size_t i = string.pages().size(); i-- > 0;) {  // the page returned last is taken first
+            slotted_.add(string.page(i), i > 0 ? string.page(i - 1) : std::span<Pair>());
+            state.spend(string.pages()[i]);
+        }
+    }
+    slotted_.collect_long_rows();
+    PageWriter writer(pages_, state.sorted);
+    for (std::size_t row = 0; row < rows; row += row_group)
+        write_group(row, std::min(bits, keys.column_bits()), writer);
+    writer.finish();
+}
+
+/// Sorts the columns of a group of slotted rows and writes the pairs to pages.
+void BucketSort::write_group(std::size_t first_row, unsigned bits, PageWriter& writer) {
+    const RowGroup group = slotted_.group(first_row);
+    std::uint32_t pairs = 0;
+    bool any_long = false;
+    for (std::size_t row = 0; row < row_group; ++row) {
+        pairs += group.counts[row];
+        any_long |= group.counts[row] > row_slots;
+    }
+    if (pairs == 0) return;
+    if (!any_long && writer.left() >= pairs + row_slots) {
+        octopair::write_group(group, writer.next());
+        return writer.wrote(pairs);
+    }
+    staged_.resize((row_group + 1) * row_slots);
+    octopair::write_group(group, staged_.data());
+    if (!any_long) return writer.copy(std::span(staged_).first(pairs));
+    std::span<const Pair> short_rows = staged_;
+    for (std::size_t row = first_row; row < std::min(first_row + row_group, slotted_.rows()); ++row) {
+        if (slotted_.is_long(row)) {
+            write_long_row(row, bits, writer);
+            continue;
+        }
+        writer.copy(short_rows.first(slotted_.size(row)));
+        short_rows = short_rows.subspan(slotted_.size(row));
+    }
+}
+
+/// Sorts the columns of a long slotted row and writes the pairs to pages.
+void BucketSort::write_long_row(std::size_t row, unsigned bits, PageWriter& writer) {
+    const std::span<const std::uint32_t> columns = slotted_.long_row(row);
+    if (columns.size() > max_row_at_once || columns.size() > writer.left()) {
+        return write_row(slotted_.object(row), columns, bits, writer);
+    }
+    const auto end = std::uint32_t(columns.size());
+    sort_rows({columns.data(), 0, {&end, 1}, slotted_.object(row)}, writer.next());
+    writer.wrote(end);
 }
 
 void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, CallState& state) {

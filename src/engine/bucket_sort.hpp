@@ -1,8 +1,10 @@
 // BucketSort: sorts pairs into ascending order (by a, then b) with one bucket for each range of neighbouring `a`.
 //
 // 1. Each thread or worker scatters the pairs that it finds into its own buckets. A bucket is a string of pages.
-// 2. Each bucket is gathered from all threads or workers and sorted independently: its pairs are counted by `a` and moved to
-//    their rows, then the objects `b` of each row are sorted. If most rows are empty, the pairs are sorted as they are.
+// 2. Each bucket is gathered from all threads or workers and sorted independently, by one of three ways:
+//      rows are mostly short   their objects `b` are put into slots, and sorted by networks (slotted_rows.hpp)
+//      rows are mostly empty   the pairs are sorted as they are
+//      otherwise               pairs are counted by `a` and moved to their rows, then the objects `b` of each row are sorted
 //
 // Invariants
 //   Every key in bucket i is less than every key in bucket i + 1.
@@ -19,6 +21,7 @@
 #include "base/radix_sort.hpp"
 #include "base/tuning.hpp"
 #include "engine/pair_pages.hpp"
+#include "engine/slotted_rows.hpp"
 
 namespace octopair {
 
@@ -116,6 +119,9 @@ private:
         std::uint64_t first;
     };
     void sort_sparse(const std::vector<PageString>& strings, CallState& state);
+    void sort_in_slots(const std::vector<PageString>& strings, unsigned bits, CallState& state);
+    void write_group(std::size_t first_row, unsigned bits, PageWriter& writer);
+    void write_long_row(std::size_t row, unsigned bits, PageWriter& writer);
     void sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, CallState& state);
     void write_rows(const Rows& rows, unsigned bits, CallState& state);
     void write_row(std::uint32_t row, std::span<const std::uint32_t> columns, unsigned bits, PageWriter& writer);
@@ -126,6 +132,8 @@ private:
     const BucketPlan& plan_;
     Pages& pages_;
     std::vector<Pair> sparse_;             // pairs of a bucket with many empty rows
+    SlottedRows slotted_;                  // pairs of a bucket with short rows
+    std::vector<Pair> staged_;             // pairs of a group of short rows that do not fit into the page
     Buffer<std::uint32_t> columns_;        // objects `b` of a bucket, row by row
     std::vector<std::uint32_t> row_ends_;  // by row of a bucket: position behind its last column; then second counters
     std::vector<std::uint64_t> bitmap_;    // columns of a long row

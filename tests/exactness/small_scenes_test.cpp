@@ -84,6 +84,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                pairs_counted,
                                list_block_full,
                                bucket_sorted,
+                               bucket_in_slots,
                                sparse_bucket_sorted,
                                bucket_split,
                                long_row_sorted,

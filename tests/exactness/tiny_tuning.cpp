@@ -156,9 +156,11 @@ void shrink(Tuning::Large& large, Shrinker& to) {
     to.one_of<std::size_t>(large.max_near_table, {1, 1 << 17});
 }
 
-void shrink_ranges(Tuning::Dynamic& dynamic, Shrinker& to) {
-    to.one_of<std::size_t>(dynamic.range_entries, {1, 10, 100});
-    dynamic.min_range_entries = 1;
+/// Drawn last, so that the seeds of earlier findings keep the other values.
+void shrink_later(Tuning& tuning, Shrinker& to) {
+    to.one_of<std::size_t>(tuning.dynamic.range_entries, {1, 10, 100});
+    tuning.dynamic.min_range_entries = 1;
+    to.one_of<std::size_t>(tuning.output.slotted_pairs_per_row, {0, 2, 12});
 }
 
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
@@ -190,7 +192,7 @@ Tuning tiny_tuning(std::uint64_t seed) {
     shrink(tuning.ranks, to);
     shrink(tuning.scene, to);
     shrink(tuning.large, to);
-    shrink_ranges(tuning.dynamic, to);  // last, so that the seeds of earlier findings keep the other values
+    shrink_later(tuning, to);
     if (seed % 3 == 0) favour_crowds(tuning);
     if (seed % 4 == 1) tuning.processes.nested_bytes = ~std::uint64_t(0);  // each worker builds its own nested octrees
     return tuning;
