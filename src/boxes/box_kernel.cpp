@@ -66,10 +66,12 @@ bool are_boxes_simd(std::span<const Box3f> boxes) { return check_boxes_of<false>
 
 #endif
 
-/// Specification of round_boxes(), for one box.
-template <typename Real>
-bool round_one(const Box<Real>& box, double padding, const OutwardRounding& rounding, Entry& out) {
-    out = rounding.entry(wide(box), padding);
+/// Specification of round_boxes(), for one box. `Out`: Box3f or Entry.
+template <typename Real, typename Out>
+bool round_one(const Box<Real>& box, double padding, const OutwardRounding& rounding, Out& out) {
+    const Entry entry = rounding.entry(wide(box), padding);
+    std::copy_n(entry.min, 3, out.min);
+    std::copy_n(entry.max, 3, out.max);
     return is_box(box) && is_padding(padding);
 }
 
@@ -85,14 +87,9 @@ bool bound_one(const Triangle3d& triangle, Box3f& box) {
     return finite;
 }
 
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
+#if HWY_TARGET <= HWY_AVX2
 
 using Doubles = hn::FixedTag<double, 4>;  // one end of a box, and a fourth number whose results are discarded
-
-HWY_INLINE hn::Vec<Doubles> load_wide(const float* numbers) {
-    return hn::PromoteTo(Doubles(), hn::LoadU(hn::FixedTag<float, 4>(), numbers));
-}
-HWY_INLINE hn::Vec<Doubles> load_wide(const double* numbers) { return hn::LoadU(Doubles(), numbers); }
 
 /// SIMD version of finite_float_above() (geometry/rounding.hpp).
 HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {
@@ -109,51 +106,120 @@ HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value)
     const auto bits = hn::BitCast(i, hn::Add(nearest, hn::Zero(f)));
     const auto negative = hn::BroadcastSignBit(bits);
     const auto up = hn::Sub(hn::Xor(step, negative), negative);
-    return hn::BitCast(f, hn::Sub(bits, up));
+    return hn::Add(hn::BitCast(f, hn::Sub(bits, up)), hn::Zero(f));  // -0 becomes 0
 }
 
-/// `widened`: true if there is a margin or padding.
+/// Numbers of a box in a register: both ends and two more numbers, or one end and one more.
+using Ends = hn::CappedTag<double, 8>;
+
+#if HWY_TARGET <= HWY_AVX3
+
+HWY_INLINE hn::Vec<hn::Rebind<float, Ends>> round_up_simd(hn::Vec<Ends> value) {
+    const hn::Rebind<float, Ends> f;
+    const auto most = hn::Set(Ends(), double(FLT_MAX));
+    const auto clamped = hn::Min(hn::Max(value, hn::Neg(most)), most);
+    const hn::Vec<decltype(f)> up{_mm512_cvt_roundpd_ps(clamped.raw, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC)};
+    return hn::Add(up, hn::Zero(f));  // -0 becomes 0
+}
+
+#endif
+
+HWY_INLINE hn::Vec<Ends> load_ends(const float* numbers) {
+    return hn::PromoteTo(Ends(), hn::LoadU(hn::Rebind<float, Ends>(), numbers));
+}
+HWY_INLINE hn::Vec<Ends> load_ends(const double* numbers) { return hn::LoadU(Ends(), numbers); }
+
+/// SIMD version of OutwardRounding::entry(), for numbers of a box. `widened`: true if there is a margin or padding.
+template <bool widened>
+class Outward {
+public:
+    using Floats = hn::Rebind<float, Ends>;
+    /// `lows`: number of lanes, from the first on, that have a low end.
+    Outward(const OutwardRounding& rounding, std::size_t lows) {
+        alignas(64) double origins[8], signs[8];
+        for (std::size_t i = 0; i < 8; ++i) {
+            origins[i] = rounding.origin[i % 3];
+            signs[i] = i < lows ? -0.0 : 0.0;
+        }
+        origin_ = hn::Load(Ends(), origins);
+        sign_ = hn::Load(Ends(), signs);
+    }
+    HWY_INLINE hn::Vec<Floats> operator()(hn::Vec<Ends> bound, hn::Vec<Ends> widening) const {
+        const Ends d;
+        auto moved = hn::Xor(hn::Sub(bound, origin_), sign_);
+        if constexpr (widened) {
+            const auto part = hn::Set(d, OutwardRounding::error_part);
+            const auto error = hn::Add(hn::Add(hn::Mul(hn::Abs(bound), part), hn::Mul(hn::Abs(origin_), part)),
+                                       hn::Mul(widening, part));
+            const auto extra = hn::IfThenElseZero(hn::Gt(widening, hn::Zero(d)), hn::Add(widening, error));
+            const auto too_wide = hn::Gt(widening, hn::Set(d, OutwardRounding::max_widening));
+            moved = hn::IfThenElse(too_wide, hn::Set(d, double(FLT_MAX)), hn::Add(moved, extra));
+        }
+        return hn::Xor(round_up_simd(moved), hn::DemoteTo(Floats(), sign_));
+    }
+
+private:
+    hn::Vec<Ends> origin_, sign_;
+};
+
+/// Rounds boxes, and remembers whether all were valid. Reads and writes up to two numbers beyond each box.
 template <bool widened, typename Real>
+class BoxRounder {
+public:
+    HWY_INLINE explicit BoxRounder(const OutwardRounding& rounding)
+        : low_(rounding, 3), high_(rounding, 0), good_(hn::FirstN(Ends(), hn::MaxLanes(Ends()))) {}
+
+    HWY_INLINE void round(const Box<Real>& box, double widening, float* min, float* max) {
+        constexpr std::size_t read_ahead = 3072;  // bytes
+        hwy::Prefetch(reinterpret_cast<const char*>(&box) + read_ahead);
+        const Ends d;
+        const typename Outward<widened>::Floats f;
+        const auto wide = hn::Set(d, widening);
+        const auto low = load_ends(box.min);
+        hn::StoreU(low_(low, wide), f, min);
+        if constexpr (hn::MaxLanes(Ends()) == 8) {
+            (void)max;
+            alignas(64) static constexpr std::int64_t upper[8] = {3, 4, 5, 3, 4, 5, 6, 7};
+            check(low, hn::TableLookupLanes(low, hn::SetTableIndices(d, upper)), 6);
+        } else {
+            const auto high = load_ends(box.max);
+            hn::StoreU(high_(high, wide), f, max);
+            check(low, high, 3);
+        }
+    }
+    HWY_INLINE bool all_good() const { return hn::AllTrue(Ends(), good_); }
+
+private:
+    /// Checks the first `count` lanes.
+    HWY_INLINE void check(hn::Vec<Ends> low, hn::Vec<Ends> high, std::size_t count) {
+        const Ends d;
+        const auto largest = hn::Set(d, double(std::numeric_limits<Real>::max()));
+        const auto finite = hn::And(hn::Le(hn::Abs(low), largest), hn::Le(hn::Abs(high), largest));
+        good_ = hn::And(good_, hn::Or(hn::And(finite, hn::Le(low, high)), hn::Not(hn::FirstN(d, count))));
+    }
+    Outward<widened> low_, high_;
+    hn::Mask<Ends> good_;
+};
+
+template <bool widened, typename Real, typename Out>
 bool round_boxes_of(std::span<const Box<Real>> boxes, std::span<const double> padding, const OutwardRounding& rounding,
-                    std::span<Entry> out) {
+                    std::span<Out> out) {
     if (boxes.empty()) return true;
-    const Doubles d;
-    const hn::FixedTag<float, 4> f;
-    const auto origin = hn::LoadU(d, rounding.origin.data());
-    const auto largest = hn::Set(d, double(std::numeric_limits<Real>::max()));
-    const auto part = hn::Set(d, OutwardRounding::error_part);
-    const auto too_wide = hn::Set(d, OutwardRounding::max_widening);
-    const auto everything = hn::Set(d, double(FLT_MAX));
-    auto good = hn::MaskFromVec(hn::BitCast(d, hn::Set(hn::FixedTag<std::int64_t, 4>(), -1)));
+    BoxRounder<widened, Real> rounder(rounding);
     bool paddings_good = true;
-    const std::size_t last = boxes.size() - 1;  // not in the loop, which reads one number beyond each box
+    const std::size_t last = boxes.size() - 1;  // not in the loop, which reads and writes beyond each box
     for (std::size_t k = 0; k < last; ++k) {
         const double own = padding.empty() ? 0 : padding[k];
         paddings_good &= is_padding(own);
-        const auto widening = hn::Set(d, rounding.margin / 2 + own);
-        const auto low = load_wide(boxes[k].min);
-        const auto high = load_wide(boxes[k].max);
-        const auto finite = hn::And(hn::Le(hn::Abs(low), largest), hn::Le(hn::Abs(high), largest));
-        good = hn::And(good, hn::Or(hn::And(finite, hn::Le(low, high)), hn::Not(hn::FirstN(d, 3))));
-        const auto outward = [&](auto bound, auto moved) HWY_ATTR {
-            if constexpr (!widened) return round_up_simd(moved);
-            const auto error = hn::Add(hn::Add(hn::Mul(hn::Abs(bound), part), hn::Mul(hn::Abs(origin), part)),
-                                       hn::Mul(widening, part));
-            const auto extra = hn::IfThenElseZero(hn::Gt(widening, hn::Zero(d)), hn::Add(widening, error));
-            return round_up_simd(hn::IfThenElse(hn::Gt(widening, too_wide), everything, hn::Add(moved, extra)));
-        };
-        // Each store writes one number too many: the first store into `max`, which the second store overwrites; the second
-        // store into `object`, which the caller sets.
-        hn::StoreU(hn::Neg(outward(low, hn::Neg(hn::Sub(low, origin)))), f, out[k].min);
-        hn::StoreU(outward(high, hn::Sub(high, origin)), f, out[k].max);
+        rounder.round(boxes[k], rounding.margin / 2 + own, out[k].min, out[k].max);
     }
     const double own = padding.empty() ? 0 : padding[last];
-    return hn::AllTrue(d, good) && round_one(boxes[last], own, rounding, out[last]) && paddings_good;
+    return rounder.all_good() && round_one(boxes[last], own, rounding, out[last]) && paddings_good;
 }
 
-template <typename Real>
+template <typename Real, typename Out>
 bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
-                      const OutwardRounding& rounding, std::span<Entry> out) {
+                      const OutwardRounding& rounding, std::span<Out> out) {
     return rounding.margin > 0 || !padding.empty() ? round_boxes_of<true>(boxes, padding, rounding, out)
                                                    : round_boxes_of<false>(boxes, padding, rounding, out);
 }
@@ -185,9 +251,9 @@ bool bound_triangles_simd(std::span<const Triangle3d> triangles, std::span<Box3f
     return finite;
 }
 
-template <typename Real>
+template <typename Real, typename Out>
 bool round_boxes_simd(std::span<const Box<Real>> boxes, std::span<const double> padding,
-                      const OutwardRounding& rounding, std::span<Entry> out) {
+                      const OutwardRounding& rounding, std::span<Out> out) {
     bool good = true;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         good &= round_one(boxes[i], padding.empty() ? 0 : padding[i], rounding, out[i]);
@@ -252,6 +318,14 @@ bool round_wide_simd(std::span<const Box3d> boxes, std::span<const double> paddi
                      std::span<Entry> out) {
     return round_boxes_simd(boxes, padding, rounding, out);
 }
+bool round_narrow_boxes_simd(std::span<const Box3f> boxes, std::span<const double> padding,
+                             const OutwardRounding& rounding, std::span<Box3f> out) {
+    return round_boxes_simd(boxes, padding, rounding, out);
+}
+bool round_wide_boxes_simd(std::span<const Box3d> boxes, std::span<const double> padding,
+                           const OutwardRounding& rounding, std::span<Box3f> out) {
+    return round_boxes_simd(boxes, padding, rounding, out);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace octopair
@@ -278,6 +352,8 @@ bool copy_boxes(std::span<const Box3f> boxes, std::span<Entry> out) {
 
 HWY_EXPORT(round_narrow_simd);
 HWY_EXPORT(round_wide_simd);
+HWY_EXPORT(round_narrow_boxes_simd);
+HWY_EXPORT(round_wide_boxes_simd);
 
 bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out) {
@@ -287,6 +363,16 @@ bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, 
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out) {
     return HWY_DYNAMIC_DISPATCH(round_wide_simd)(boxes, padding, rounding, out);
+}
+
+bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                 std::span<Box3f> out) {
+    return HWY_DYNAMIC_DISPATCH(round_narrow_boxes_simd)(boxes, padding, rounding, out);
+}
+
+bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                 std::span<Box3f> out) {
+    return HWY_DYNAMIC_DISPATCH(round_wide_boxes_simd)(boxes, padding, rounding, out);
 }
 
 HWY_EXPORT(refused_narrow_simd);

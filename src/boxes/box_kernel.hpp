@@ -70,12 +70,16 @@ bool are_boxes(std::span<const Box3d> boxes);
 /// Copies the bounds of boxes unchanged. Returns false if is_box() is false for any box.
 bool copy_boxes(std::span<const Box3f> boxes, std::span<Entry> out);
 
-/// Rounds boxes outward and sets the bounds of `out`; `object` and `mask` are then unspecified. Returns false if is_box() or
+/// Rounds boxes outward and sets the bounds of `out`; `object` and `mask` of entries are then unspecified. Returns false if is_box() or
 /// is_padding() is false for any box. `padding`: one number for each box, or empty for none.
 bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out);
 bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
                  std::span<Entry> out);
+bool round_boxes(std::span<const Box3f> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                 std::span<Box3f> out);
+bool round_boxes(std::span<const Box3d> boxes, std::span<const double> padding, const OutwardRounding& rounding,
+                 std::span<Box3f> out);
 
 /// The boxes of the objects `a` and `b` of pairs. The first object `b` has the number `second_begin`.
 template <typename Real>

@@ -218,13 +218,22 @@ bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-PlainBoxes BoxSource::plain(std::size_t begin, std::size_t count) const {
-    if (!form_.exact || join()) return {};
-    return {std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, count), std::uint32_t(begin)};
+PlainBoxes BoxSource::plain(std::size_t begin, std::span<Box3f> room) const {
+    if (join()) return {};
+    const auto first_object = std::uint32_t(begin);
+    if (form_.exact) {
+        return {std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, room.size()), first_object};
+    }
+    const auto padding = first_->padding.empty() ? first_->padding : first_->padding.subspan(begin, room.size());
+    const auto round = [&](auto boxes) {
+        return round_boxes(boxes.subspan(begin, room.size()), padding, form_.rounding, room);
+    };
+    return {room, first_object, nullptr, std::visit(round, first_->boxes)};
 }
 
 void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {
-    if (const auto boxes = plain(0, size()).boxes; !boxes.empty()) {
+    if (form_.exact && !join()) {
+        const auto boxes = std::get<std::span<const Box3f>>(first_->boxes);
         for (std::size_t i = 0; i < out.size(); ++i) std::memcpy(&out[i], &boxes[positions[i]], sizeof(Box3f));
         return;
     }

@@ -27,13 +27,11 @@ inline float float_above(double value) {
     return double(nearest) < value ? next_above(nearest) : nearest;
 }
 
-/// Returns the smallest float32 >= `value`, but at most FLT_MAX and at least -FLT_MAX. If the float32 nearest to `value` is 0,
-/// its sign is positive.
+/// Returns the smallest float32 >= `value`, but at most FLT_MAX and at least -FLT_MAX. Zero has a positive sign.
 inline float finite_float_above(double value) {
     if (value <= -double(FLT_MAX)) return -FLT_MAX;
     if (value >= double(FLT_MAX)) return FLT_MAX;
-    const float nearest = float(value) + 0.0F;
-    return double(nearest) < value ? next_above(nearest) : nearest;
+    return float_above(value) + 0.0F;
 }
 
 /// Returns the smallest float64 >= a + b. If the sum overflows, returns infinity with the sign of the sum.

@@ -56,8 +56,8 @@ TEST(BoxKernel, AgreesWithItsSpecification) {
     EXPECT_GT(seen[1], 1000u);
 }
 
-/// Compares the kernel with the specification on boxes of special and of ordinary numbers.
-template <typename Real>
+/// Compares the kernel with the specification on boxes of special and of ordinary numbers. `Out`: Entry or Box3f.
+template <typename Real, typename Out>
 void check_rounding(const OutwardRounding& rounding, bool padded) {
     const Real most = std::numeric_limits<Real>::max();
     const Real special[] = {0,     Real(-0.0),   1, -1, Real(1e-45), Real(1e-40), Real(1 + 1e-7), most,
@@ -75,25 +75,33 @@ void check_rounding(const OutwardRounding& rounding, bool padded) {
         }
     }
     for (double& one : padding) one = random() % 20 == 0 ? DBL_MAX : random() % 2 == 0 ? 0 : std::abs(place(random));
-    std::vector<Entry> entries(boxes.size());
-    ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
+    std::vector<Out> rounded(boxes.size());
+    ASSERT_TRUE(round_boxes(boxes, padding, rounding, rounded));
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const Entry expected = rounding.entry(wide(boxes[i]), padded ? padding[i] : 0);
-        ASSERT_EQ(std::memcmp(&entries[i], &expected, 6 * sizeof(float)), 0) << i;
+        ASSERT_EQ(std::memcmp(&rounded[i], &expected, 6 * sizeof(float)), 0) << i;
+    }
+    for (Real* const number :
+         {&boxes[7].min[0], &boxes[7].min[1], &boxes[7].min[2], &boxes[7].max[0], &boxes[7].max[1], &boxes[7].max[2]}) {
+        for (const Real wrong : {Real(nan), Real(infinite), -Real(infinite)}) {
+            const Real right = std::exchange(*number, wrong);
+            EXPECT_FALSE(round_boxes(boxes, padding, rounding, rounded)) << wrong;
+            *number = right;
+        }
     }
     boxes.back().max[1] = std::numeric_limits<Real>::infinity();
-    EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
+    EXPECT_FALSE(round_boxes(boxes, padding, rounding, rounded));
     boxes.back().max[1] = boxes.back().min[1];
-    ASSERT_TRUE(round_boxes(boxes, padding, rounding, entries));
+    ASSERT_TRUE(round_boxes(boxes, padding, rounding, rounded));
     for (const double bad : {-1.0, double(nan), double(infinite)}) {
         if (!padded) break;
         padding[17] = bad;
-        EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries)) << bad;
+        EXPECT_FALSE(round_boxes(boxes, padding, rounding, rounded)) << bad;
     }
     padding.assign(padding.size(), 0);
     std::swap(boxes[5].min[2], boxes[5].max[2]);
     boxes[5].min[2] += Real(1);
-    EXPECT_FALSE(round_boxes(boxes, padding, rounding, entries));
+    EXPECT_FALSE(round_boxes(boxes, padding, rounding, rounded));
 }
 
 TEST(BoxKernel, RoundsAsSpecified) {
@@ -101,8 +109,10 @@ TEST(BoxKernel, RoundsAsSpecified) {
         for (const double origin : {0.0, 12.345, -1e7}) {
             for (const bool padded : {false, true}) {
                 const OutwardRounding rounding{{origin, -origin, 0, 0}, margin};
-                check_rounding<float>(rounding, padded);
-                check_rounding<double>(rounding, padded);
+                check_rounding<float, Entry>(rounding, padded);
+                check_rounding<float, Box3f>(rounding, padded);
+                check_rounding<double, Entry>(rounding, padded);
+                check_rounding<double, Box3f>(rounding, padded);
             }
         }
     }

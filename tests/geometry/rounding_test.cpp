@@ -37,6 +37,7 @@ TEST(Rounding, FiniteFloatAboveIsFiniteAndNearestZerosArePositive) {
     EXPECT_EQ(rounding::finite_float_above(-1e300), -FLT_MAX);
     EXPECT_EQ(std::bit_cast<std::uint32_t>(rounding::finite_float_above(-1e-320)), 0u);
     EXPECT_EQ(std::bit_cast<std::uint32_t>(rounding::finite_float_above(-0.0)), 0u);
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(rounding::finite_float_above(-1e-45)), 0u);
     EXPECT_EQ(rounding::finite_float_above(0.1), rounding::float_above(0.1));
 }
 

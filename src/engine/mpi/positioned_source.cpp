@@ -34,8 +34,8 @@ bool PositionedSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-PlainBoxes PositionedSource::plain(std::size_t begin, std::size_t count) const {
-    PlainBoxes plain = boxes_.plain(begin, count);
+PlainBoxes PositionedSource::plain(std::size_t begin, std::span<Box3f> room) const {
+    PlainBoxes plain = boxes_.plain(begin, room);
     plain.objects = positions_.of_set[0].data() + begin;
     return plain;
 }

@@ -53,8 +53,8 @@ public:
 
 private:
     bool encode(std::size_t begin, std::size_t count) {
-        plain_ = steps_.source.plain(begin, count);
-        if (!plain_.boxes.empty()) return encoder_.encode(plain_, batch_);
+        plain_ = steps_.source.plain(begin, std::span(rounded_).first(count));
+        if (!plain_.boxes.empty()) return plain_.valid && encoder_.encode(plain_, batch_);
         const std::span<Entry> entries = std::span(loaded_).first(count);
         if (!steps_.source.load(begin, entries)) return false;
         encoder_.encode(entries, batch_);
@@ -133,6 +133,7 @@ private:
     Writer writer_;
     EncodedBatch batch_;
     PlainBoxes plain_;  // boxes of the batch, or none
+    std::array<Box3f, max_encoded> rounded_;
     std::array<Entry, max_encoded> loaded_;  // entries of the batch, unless plain_ has its boxes
 };
 

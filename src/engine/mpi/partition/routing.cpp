@@ -69,7 +69,9 @@ std::vector<std::uint32_t> Routing::find_homes(Executor& executor) {
 
 /// Finds the leaves of objects [begin, begin + count). Returns false if one of them is no valid box.
 bool Routing::locate(std::size_t begin, std::size_t count, LocatedBatch& batch) const {
-    if (const auto boxes = source_.plain(begin, count).boxes; !boxes.empty()) return locator_.locate(boxes, batch);
+    std::array<Box3f, max_batch> room;
+    const PlainBoxes plain = source_.plain(begin, std::span(room).first(count));
+    if (!plain.boxes.empty()) return plain.valid && locator_.locate(plain.boxes, batch);
     std::array<Entry, max_batch> entries;
     const std::span<Entry> loaded = std::span(entries).first(count);
     if (!source_.load(begin, loaded)) return false;
