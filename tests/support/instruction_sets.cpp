@@ -1,5 +1,5 @@
 // Limits the fast kernels of a test program to the instruction set that OCTOPAIR_TEST_INSTRUCTIONS names. Possible
-// values: AVX3, AVX2, SSE4, SSSE3, SSE2.
+// values: AVX3_DL, AVX3, AVX2, SSE4, SSSE3.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

@@ -99,12 +99,12 @@ private:
     hn::Vec<D> low1_[registers], high1_[registers], low2_[registers], high2_[registers];
 };
 
-/// Writes `first` + k for each bit k of a set, ascending. Returns their end. May write column_group numbers, of which the next call overwrites
-/// those behind the end.
+/// Writes `first` + k for each bit k of a set, ascending, and returns their end. `count`: number of columns that may be in the set. May write
+/// column_group numbers, of which the next call overwrites those behind the end.
 #if HWY_TARGET <= HWY_AVX3_DL
 
 template <std::size_t width>
-HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* out) {
+HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t, CellHit first, CellHit* out) {
     const hn::CappedTag<std::uint8_t, width> bytes;
     const hn::CappedTag<std::uint32_t, width / 4> d;
     const hn::Half<decltype(bytes)> half;
@@ -134,7 +134,7 @@ HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* ou
 #elif HWY_TARGET <= HWY_AVX3
 
 template <std::size_t width>
-HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* out) {
+HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t, CellHit first, CellHit* out) {
     for (std::size_t k = 0; k < width; k += hn::Lanes(Words())) {
         const auto some = std::uint32_t(set >> k) & 0xFFFFu;
         const auto numbers = hn::Add(lane_numbers(), hn::Set(Words(), first + std::uint32_t(k)));
@@ -147,15 +147,16 @@ HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* ou
 #else
 
 template <std::size_t width>
-HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* out) {
+HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t count, CellHit first, CellHit* out) {
     const hn::Rebind<std::uint8_t, Words> bytes;
-    for (std::size_t k = 0; k < width; k += LaneTable::lanes) {
-        const std::size_t some = set >> k & 0xFFu;
-        const auto base = hn::Set(Words(), first + std::uint32_t(k));
+    auto base = hn::Set(Words(), first);
+    for (std::uint32_t k = 0; k < count; k += LaneTable::lanes, set >>= LaneTable::lanes) {
+        const std::size_t some = set & 0xFFu;
         for (std::size_t lane = 0; lane < LaneTable::lanes; lane += hn::Lanes(Words())) {
             const auto columns = hn::PromoteTo(Words(), hn::LoadU(bytes, lanes_in.of[some].data() + lane));
             hn::StoreU(hn::Add(columns, base), Words(), out + lane);
         }
+        base = hn::Add(base, hn::Set(Words(), std::uint32_t(LaneTable::lanes)));
         out += lanes_in.count[some];
     }
     return out;
@@ -165,47 +166,64 @@ HWY_INLINE CellHit* write_hits(ColumnBits<width> set, CellHit first, CellHit* ou
 
 static_assert(CellSet::bytes_read_beyond >= column_group);
 
+/// Adjacent rows and the ends of their windows.
+template <std::size_t count>
+struct RowBlock {
+    HWY_INLINE RowBlock(const CellWindows& windows, std::size_t first_row) : row(first_row) {
+        for (std::size_t r = 0; r < count; ++r) ends[r] = windows.end(row + r);
+        for (const std::size_t one : ends) end = std::max(end, one);
+    }
+    std::size_t row, end = 0;
+    std::size_t ends[count];
+};
+
+/// The planes of both sets of a sweep.
+struct SweepPlanes {
+    Planes rows, columns;
+};
+
+/// Tests rows against the columns [base, base + width) of their windows. Writes the hits and returns their end. `first`: the columns begin
+/// the windows of a self sweep, so row r has no column before its successor.
+template <std::size_t width, bool first, std::size_t count>
+HWY_INLINE CellHit* test_rows(const SweepPlanes& planes, const RowBlock<count>& block, std::size_t base, CellHit* out) {
+    const Columns<width> columns(planes.columns, base);
+    const auto some = std::uint32_t(std::min<std::size_t>(block.end - base, width));
+    for (std::size_t r = 0; r < count; ++r) {
+        auto asked = first_columns<width>(first ? block.ends[r] - base : std::max(block.ends[r], base) - base);
+        if (first) asked &= ~ColumnBits<width>(0) << r;
+        const auto hits = columns.overlapping(planes.rows, block.row + r) & asked;
+        out = write_hits<width>(hits, some, CellHit((block.row + r) << 16 | base), out);
+    }
+    return out;
+}
+
 /// Rows of a self sweep are tested in blocks.
 std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
     constexpr std::size_t narrow = 32;
     const CellWindows windows(sweep);
-    const Planes planes(sweep.rows);
-    const std::size_t rows = sweep.rows.size();
+    const SweepPlanes planes{Planes(sweep.rows), Planes(sweep.rows)};
     CellHit* at = hits.data();
     CellHit* const last = hits.data() + (hits.size() - min_hit_room);
     auto [row, base, in_row] = cursor;
     RunPrefetcher ahead = sweep.ahead == nullptr ? RunPrefetcher() : *sweep.ahead;  // a copy stays in registers
+    const std::size_t rows = sweep.rows.size();
     for (; row < rows && at <= last; row += row_block, in_row = false) {
-        const std::size_t ends[row_block] = {windows.end(row), windows.end(row + 1), windows.end(row + 2),
-                                             windows.end(row + 3)};
-        const std::size_t most = std::max(std::max(ends[0], ends[1]), std::max(ends[2], ends[3]));
-        const auto hit = [&](std::size_t r) { return CellHit((row + r) << 16 | base); };
+        const RowBlock<row_block> block(windows, row);
+        const std::size_t end = block.end;
         if (!in_row) {
             ahead.fetch_line();
             base = row + 1;
-            // Row r is tested against the columns from its successor on, which is number r from `base` on.
-            const auto test_first = [&]<std::size_t width>() HWY_ATTR {
-                const Columns<width> columns(planes, base);
-                for (std::size_t r = 0; r < row_block; ++r) {
-                    const auto asked = first_columns<width>(ends[r] - base) & (~ColumnBits<width>(0) << r);
-                    at = write_hits<width>(columns.overlapping(planes, row + r) & asked, hit(r), at);
-                }
-            };
-            if (most - base <= narrow) {
-                test_first.template operator()<narrow>();
+            if (end - base <= narrow) {
+                at = test_rows<narrow, true>(planes, block, base, at);
                 continue;
             }
-            test_first.template operator()<column_group>();
+            at = test_rows<column_group, true>(planes, block, base, at);
             base += column_group;
         }
-        for (; base < most && at <= last; base += column_group) {
-            const Columns<column_group> columns(planes, base);
-            for (std::size_t r = 0; r < row_block; ++r) {
-                const auto asked = first_columns<column_group>(std::max(ends[r], base) - base);
-                at = write_hits<column_group>(columns.overlapping(planes, row + r) & asked, hit(r), at);
-            }
+        for (; base < end && at <= last; base += column_group) {
+            at = test_rows<column_group, false>(planes, block, base, at);
         }
-        if (base < most) {
+        if (base < end) {
             in_row = true;
             break;
         }
@@ -218,20 +236,18 @@ std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<Cell
 
 std::size_t cross_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
     const CellWindows windows(sweep);
-    const Planes row_planes(sweep.rows), column_planes(sweep.columns);
-    const std::size_t rows = sweep.rows.size();
+    const SweepPlanes planes{Planes(sweep.rows), Planes(sweep.columns)};
     CellHit* at = hits.data();
     CellHit* const last = hits.data() + (hits.size() - min_hit_room);
     auto [row, base, in_row] = cursor;
+    const std::size_t rows = sweep.rows.size();
     for (; row < rows; ++row, in_row = false) {
-        const std::size_t end = windows.end(row);
+        const RowBlock<1> block(windows, row);
         if (!in_row) base = windows.begin_crossing(row);
-        for (; base < end && at <= last; base += column_group) {
-            const Columns<column_group> columns(column_planes, base);
-            const auto asked = first_columns<column_group>(end - base);
-            at = write_hits<column_group>(columns.overlapping(row_planes, row) & asked, CellHit(row << 16 | base), at);
+        for (; base < block.end && at <= last; base += column_group) {
+            at = test_rows<column_group, false>(planes, block, base, at);
         }
-        if (base < end) {
+        if (base < block.end) {
             in_row = true;
             break;
         }
