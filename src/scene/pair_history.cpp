@@ -20,8 +20,13 @@ public:
 
     bool done() const { return at_ == end_; }
     const Pair& pair() const { return *at_; }
-    void next() {
-        if (++at_ == end_) next_chunk();
+    void next() { skip(1); }
+    /// Returns the pairs of this chunk that are left.
+    std::span<const Pair> rest() const { return {at_, end_}; }
+    /// Advances by some of the pairs of rest().
+    void skip(std::size_t pairs) {
+        at_ += pairs;
+        if (at_ == end_) next_chunk();
     }
     /// Returns the next pairs of this chunk whose keys are less than `key`, and advances beyond these pairs.
     std::span<const Pair> run_before(std::uint64_t key) {
@@ -121,12 +126,28 @@ void check_ascending(const char* list, std::span<const Pair> pairs) {
     if (wrong != pairs.end()) throw out_of_order(list, key_of(wrong[0]), key_of(wrong[1]));
 }
 
-/// Advances to the next pair of a full detection. Throws: Error{engine_failed} if the pairs are not ascending.
-void next_found(Reader& reader) {
-    const std::uint64_t key = key_of(reader.pair());
-    reader.next();
-    if (reader.done() || key < key_of(reader.pair())) return;
-    throw out_of_order("full detection", key, key_of(reader.pair()));
+/// Checks that the pairs of a full detection ascend.
+class AscendingCheck {
+public:
+    /// Throws: Error{engine_failed} if `pair` does not follow the pair before it.
+    void follow(const Pair& pair) {
+        const std::uint64_t key = key_of(pair);
+        if (key <= before_) throw out_of_order("full detection", before_, key);
+        before_ = key;
+    }
+    /// `pair`: the last of some pairs that are known to ascend.
+    void skip_to(const Pair& pair) { before_ = key_of(pair); }
+
+private:
+    std::uint64_t before_ = 0;  // no pair has the key 0: its objects would be the same
+};
+
+/// Returns the number of pairs with which both spans begin.
+std::size_t common_begin(std::span<const Pair> first, std::span<const Pair> second) {
+    const std::size_t most = std::min(first.size(), second.size());
+    std::size_t i = 0;
+    while (i < most && key_of(first[i]) == key_of(second[i])) ++i;
+    return i;
 }
 
 /// Iterates over ascending keys.
@@ -167,21 +188,27 @@ void PairHistory::note(std::vector<Pair>& changes, const Pair& pair) const {
 void PairHistory::take_over(PairChanges& changes) {
     changes.clear();
     Reader before(list_), after(other_);
+    AscendingCheck check;
+    const auto began = [&] {
+        check.follow(after.pair());
+        note(changes.began, after.pair());
+        after.next();
+    };
     while (!before.done() && !after.done()) {
-        const std::uint64_t old_key = key_of(before.pair()), new_key = key_of(after.pair());
-        if (old_key == new_key) {
-            before.next();
-            next_found(after);
-        } else if (old_key < new_key) {
+        if (const std::size_t same = common_begin(before.rest(), after.rest()); same > 0) {
+            check.follow(after.pair());
+            check.skip_to(after.rest()[same - 1]);  // the pairs of the list ascend
+            before.skip(same);
+            after.skip(same);
+        } else if (key_of(before.pair()) < key_of(after.pair())) {
             note(changes.ended, before.pair());
             before.next();
         } else {
-            note(changes.began, after.pair());
-            next_found(after);
+            began();
         }
     }
     for (; !before.done(); before.next()) note(changes.ended, before.pair());
-    for (; !after.done(); next_found(after)) note(changes.began, after.pair());
+    while (!after.done()) began();
     std::swap(list_, other_);
     other_reserved_ = false;
     size_ = list_.size();
