@@ -112,10 +112,12 @@ def peers(results, name):
 def milliseconds(seconds):
     """Formats milliseconds with about three significant digits."""
     value = seconds * 1e3
+    if value < 0.1:
+        return f"{value:#.3g}"
     return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
 
 
-TIMES = ("median_seconds", "percentile95_seconds", "slowest_seconds", "median_processor_seconds")
+TIMES = ("median_seconds", "percentile99_seconds", "slowest_seconds", "median_processor_seconds")
 
 
 def case_title(case):
@@ -127,7 +129,7 @@ def case_title(case):
 
 def frames(results):
     """Returns a row for each case and tracker, with the ratio to the scene with all pairs."""
-    lines = ["| objects | milliseconds a frame | median | 95% | slowest | processor | against scene | frames/s |",
+    lines = ["| objects | milliseconds a frame | median | 99% | slowest | processor | against scene | frames/s |",
              "|---|---|--:|--:|--:|--:|--:|--:|"]
     for case in load(results / "frames.json")["results"]:
         scene = next(row["median_seconds"] for row in case["rows"] if row["tracker"] == "scene")
@@ -143,6 +145,18 @@ def frames(results):
             cells = [title, name, *times, f"{ratio} x", rate]
             lines.append("| " + " | ".join(cells) + " |")
             title = ""
+    return "\n".join(lines)
+
+
+def frame_queries(results):
+    """Returns a row for each case with queries, with the microseconds of a query of each tracker."""
+    cases = [case for case in load(results / "frames.json")["results"] if "median_query_seconds" in case["rows"][-1]]
+    trackers = [row["tracker"] for row in cases[0]["rows"] if "median_query_seconds" in row]
+    lines = ["| microseconds a query: median (99%) | " + " | ".join(trackers) + " |", "|---|" + "--:|" * len(trackers)]
+    for case in cases:
+        rows = {row["tracker"]: row for row in case["rows"]}
+        times = [(1e6 * rows[name]["median_query_seconds"], 1e6 * rows[name]["percentile99_query_seconds"]) for name in trackers]
+        lines.append("| " + " | ".join([case_title(case), *(f"{half:.2f} ({most:.2f})" for half, most in times)]) + " |")
     return "\n".join(lines)
 
 
@@ -387,7 +401,7 @@ def model(name):
 
 
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "machines": machines, "scenes": scenes, "frames": frames,
-          "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
+          "frame_queries": frame_queries, "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
           "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
           "service_crowds": service_crowds, "service_aims": service_aims,
           "exact_objects": exact_objects, "self_intersections": self_intersections, "scaling": scaling,

@@ -1,5 +1,7 @@
 #include "frames/cases.hpp"
 
+#include <utility>
+
 namespace octopair::bench {
 
 namespace {
@@ -14,11 +16,29 @@ const std::string fcl_array = "FCL AABB tree, array";
 const std::string ode = "ODE hash space";
 const std::string ode_sweep = "ODE sweep and prune";
 
+/// Loops of games and robots: few bodies, of which all or a tenth move.
+std::vector<FrameCase> small_cases() {
+    std::vector<FrameCase> cases;
+    for (const std::uint64_t objects : {20, 200, 1'000, 5'000}) {
+        for (const bool all_move : {true, false}) {
+            FrameCase& one = cases.emplace_back();
+            one.name = std::to_string(objects) + (all_move ? "-all" : "-tenth");
+            one.objects = objects;
+            one.share = all_move ? 1 : 0.1;
+            one.threads = 1;
+            one.trackers = {full, all_pairs, bullet, fcl};
+            if (all_move && objects >= 200) one.goals = {{all_pairs, Statistic::median, {full}, 1.0}};
+            one.queries = 16;
+        }
+    }
+    return cases;
+}
+
 }  // namespace
 
 std::vector<FrameCase> frame_cases() {
     const auto median = Statistic::median;
-    return {
+    std::vector<FrameCase> cases = {
         {"1m-percent",
          1'000'000,
          0.01,
@@ -53,6 +73,8 @@ std::vector<FrameCase> frame_cases() {
          {{all_pairs, median, {bullet, bullet_deferred, fcl, fcl_array, ode, ode_sweep}, 1.0 / 5}}},
         {"100k-all", 100'000, 1, 2, {full, all_pairs}, {}},
     };
+    for (FrameCase& one : small_cases()) cases.push_back(std::move(one));
+    return cases;
 }
 
 }  // namespace octopair::bench

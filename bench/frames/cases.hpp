@@ -24,6 +24,9 @@ struct FrameCase {
     unsigned threads;
     std::vector<std::string> trackers;  ///< the first is the reference
     std::vector<Goal> goals;
+    unsigned queries = 0;  ///< number of overlap queries after each frame
+
+    bool is_small() const { return objects < 10'000; }
 };
 
 std::vector<FrameCase> frame_cases();

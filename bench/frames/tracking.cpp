@@ -76,6 +76,22 @@ void run_frame(std::vector<Runner>& runners, const Frame& frame) {
     }
 }
 
+/// Asks each tracker which objects overlap the boxes of some objects, other ones in each frame. Compares the answers.
+void run_queries(std::vector<Runner>& runners, const FrameCase& which, std::span<const Box3f> boxes, unsigned frame) {
+    std::vector<Box3f> asked(which.queries);
+    for (std::size_t i = 0; i < asked.size(); ++i) asked[i] = boxes[(frame + 37 * i) % boxes.size()];
+    std::optional<std::uint64_t> expected;
+    for (Runner& runner : runners) {
+        if (!runner.tracker || asked.empty()) continue;
+        std::optional<std::uint64_t> objects;
+        const Times times = timed([&] { objects = runner.tracker->overlaps(asked); });
+        if (!objects) continue;
+        runner.track.query_seconds.push_back(times.wall / double(asked.size()));
+        if (!expected) expected = objects;
+        if (*objects != *expected) ++runner.track.differing;
+    }
+}
+
 /// Stops slow trackers. A tracker that missed a frame cannot continue. The first tracker is the reference and always
 /// stays.
 void end_slow(std::vector<Runner>& runners, const FramePlan& plan) {
@@ -87,6 +103,13 @@ void end_slow(std::vector<Runner>& runners, const FramePlan& plan) {
     }
 }
 
+/// Requires: there are values.
+double quantile_of(std::vector<double> values, double share) {
+    std::sort(values.begin(), values.end());
+    const auto rank = std::size_t(std::ceil(share * double(values.size())));
+    return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+}
+
 const Track& named(const std::vector<Track>& tracks, const std::string& name) {
     const auto it = std::find_if(tracks.begin(), tracks.end(), [&](const Track& one) { return one.tracker == name; });
     if (it == tracks.end()) throw std::out_of_range("no track of " + name);
@@ -95,13 +118,14 @@ const Track& named(const std::vector<Track>& tracks, const std::string& name) {
 
 }  // namespace
 
+unsigned frames_of(const FrameCase& which, const FramePlan& plan) { return plan.frames * (which.is_small() ? 10 : 1); }
+
 double Track::quantile(double share, Clock clock) const {
-    std::vector<double> sorted = clock == Clock::wall ? seconds : processor_seconds;
-    if (sorted.empty()) return first_seconds;
-    std::sort(sorted.begin(), sorted.end());
-    const auto rank = std::size_t(std::ceil(share * double(sorted.size())));
-    return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+    const std::vector<double>& of = clock == Clock::wall ? seconds : processor_seconds;
+    return of.empty() ? first_seconds : quantile_of(of, share);
 }
+
+double Track::query_quantile(double share) const { return quantile_of(query_seconds, share); }
 
 double reached(const Goal& goal, const std::vector<Track>& tracks, Clock clock) {
     double fastest = named(tracks, goal.against.front()).quantile(0.5, clock);
@@ -119,11 +143,13 @@ std::vector<Track> track(const FrameCase& which, const FramePlan& plan, const Tr
         progress(fmt::format("first frame of {}: {:.2f} ms", runner.track.tracker, runner.track.first_seconds * 1e3));
     }
     judge(runners);
-    for (unsigned i = 0; i < plan.frames; ++i) {
+    const unsigned frames = frames_of(which, plan);
+    for (unsigned i = 0; i < frames; ++i) {
         run_frame(runners, motion.next());
         judge(runners);
+        run_queries(runners, which, motion.boxes(), i);
         end_slow(runners, plan);
-        if ((i + 1) % 10 == 0) progress(fmt::format("frame {} of {}", i + 1, plan.frames));
+        if ((i + 1) % (frames / 10 + 1) == 0) progress(fmt::format("frame {} of {}", i + 1, frames));
     }
     std::vector<Track> tracks;
     tracks.reserve(runners.size());

@@ -17,6 +17,9 @@ struct FramePlan {
     double max_seconds = 30;  ///< time limit of a tracker, after `min_frames` at least
 };
 
+/// Returns the number of frames of a case after the first: ten times the plan's if there are few objects, because these take little time.
+unsigned frames_of(const FrameCase& which, const FramePlan& plan);
+
 /// `processor`: processor time of all threads of this process. This time is more reliable for long frames when other
 /// programs use the machine.
 enum class Clock : std::uint8_t { wall, processor };
@@ -26,12 +29,14 @@ struct Track {
     double first_seconds = 0;
     std::vector<double> seconds;            ///< of each frame after the first, wall clock
     std::vector<double> processor_seconds;  ///< of each frame after the first, processor time
+    std::vector<double> query_seconds;      ///< of a query, by frame; empty without queries
     std::uint64_t pairs = 0;                ///< of the last frame
     std::uint64_t differing = 0;            ///< frames with other pairs than the first tracker's
     std::uint64_t differs_pairs = 0;        ///< pairs found in the first differing frame
 
     /// Returns the time that `share` of the frames do not exceed: 0.5 for the median, 1 for the slowest.
     double quantile(double share, Clock clock = Clock::wall) const;
+    double query_quantile(double share) const;
 };
 
 /// Returns the ratio that a goal bounds. Throws: std::out_of_range for an unknown tracker.

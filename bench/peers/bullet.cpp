@@ -46,6 +46,22 @@ public:
 
     const btBroadphasePairArray& found() { return cache_.getOverlappingPairArray(); }
 
+    /// Returns the number of objects that overlap a box.
+    std::uint64_t overlaps(const Box3f& box) {
+        struct Count final : btBroadphaseAabbCallback {
+            explicit Count(const Box3f& of) : low(vector_of(of.min)), high(vector_of(of.max)) {}
+            bool process(const btBroadphaseProxy* proxy) override {
+                // The trees have enlarged boxes.
+                if (TestAabbAgainstAabb2(low, high, proxy->m_aabbMin, proxy->m_aabbMax)) ++objects;
+                return true;
+            }
+            btVector3 low, high;
+            std::uint64_t objects = 0;
+        } count(box);
+        broadphase_.aabbTest(count.low, count.high, count);
+        return count.objects;
+    }
+
 private:
     btHashedOverlappingPairCache cache_;
     btDbvtBroadphase broadphase_;
@@ -76,6 +92,11 @@ public:
     void next(const Frame& frame) override {
         world_->next(frame);
         collect();
+    }
+    std::optional<std::uint64_t> overlaps(std::span<const Box3f> boxes) override {
+        std::uint64_t objects = 0;
+        for (const Box3f& box : boxes) objects += world_->overlaps(box);
+        return objects;
     }
 
 private:

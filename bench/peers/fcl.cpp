@@ -75,7 +75,19 @@ public:
         manager_.collide(&pairs, keep);
     }
 
+    /// Returns the number of objects that overlap a box.
+    std::uint64_t overlaps(const Box3f& box) {
+        query_shape_->set(box);
+        query_.computeAABB();
+        found_.clear();
+        manager_.collide(&query_, &found_, keep);
+        return found_.size();
+    }
+
 private:
+    std::shared_ptr<Bounds> query_shape_ = std::make_shared<Bounds>(Box3f{});
+    fcl::CollisionObjectd query_{query_shape_};
+    std::vector<Pair> found_;
     std::vector<Bounds*> shapes_;
     std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
     std::vector<fcl::CollisionObjectd*> pointers_, moved_;
@@ -98,6 +110,11 @@ public:
     void next(const Frame& frame) override {
         world_->next(frame);
         world_->collect(pairs_);
+    }
+    std::optional<std::uint64_t> overlaps(std::span<const Box3f> boxes) override {
+        std::uint64_t objects = 0;
+        for (const Box3f& box : boxes) objects += world_->overlaps(box);
+        return objects;
     }
 
 private:

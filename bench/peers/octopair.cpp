@@ -83,12 +83,24 @@ public:
         pairs_ = scene_.step().pairs();
     }
     Found found() const override { return {pairs_, 0}; }
+    std::optional<std::uint64_t> overlaps(std::span<const Box3f> boxes) override {
+        wide_.clear();
+        for (const Box3f& box : boxes) {
+            Box3d& wide = wide_.emplace_back();
+            std::copy_n(box.min, 3, wide.min);
+            std::copy_n(box.max, 3, wide.max);
+        }
+        scene_.overlaps(wide_, answers_);
+        return answers_.all.size();
+    }
 
 protected:
     octopair::Scene scene_;
 
 private:
     std::vector<ObjectId> ids_, moved_;
+    std::vector<Box3d> wide_;
+    Answers<std::uint32_t> answers_;
     std::uint64_t pairs_ = 0;
 };
 

@@ -5,6 +5,8 @@
 // full detection finds.
 #pragma once
 
+#include <optional>
+
 #include "peers/contender.hpp"
 
 namespace octopair::bench {
@@ -31,6 +33,12 @@ public:
     virtual void next(const Frame& frame) = 0;
     /// Returns the number and the hash of the last frame's pairs; hash 0 from a tracker that only counts.
     virtual Found found() const = 0;
+    /// Returns the number of objects that overlap a box, summed over all boxes; nothing if the tracker has no such query. This call is
+    /// timed.
+    virtual std::optional<std::uint64_t> overlaps(std::span<const Box3f> boxes) {
+        (void)boxes;
+        return std::nullopt;
+    }
 };
 
 /// Collects pairs in one list.
