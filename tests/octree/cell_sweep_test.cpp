@@ -108,6 +108,21 @@ TEST(CellSweep, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
     }
 }
 
+TEST(CellSweep, CallsTakeABoundedNumberOfRows) {
+    std::mt19937 random(7);
+    const CellSet rows = sorted_set(random_entries(random, 2 * rows_per_call + 10, 0, 40));
+    const CellSet columns = sorted_set(random_entries(random, 100, 10'000, 40));
+    for (const SweepKind kind : {SweepKind::self, SweepKind::cross, SweepKind::cross_strict}) {
+        const CellSweep sweep{rows, kind == SweepKind::self ? rows : columns, kind};
+        const std::size_t room = 10'000'000;
+        std::vector<CellHit> hits(room);
+        CellCursor cursor;
+        (void)cell_hits(sweep, cursor, hits);
+        EXPECT_EQ(cursor.row, rows_per_call);
+        ASSERT_EQ(run(cell_hits, sweep, room), run(cell_hits_scalar, sweep, room));
+    }
+}
+
 TEST(CellSweep, FindsEachPairOnce) {
     std::mt19937 random(3);
     const auto overlap = [](const CellEntry& a, const CellEntry& b) {
