@@ -136,8 +136,8 @@ def ctest_names(root):
     for path in root.glob("tests/**/CMakeLists.txt"):
         text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
         names |= Lists(root, path).names | set(re.findall(r"octopair_browser_test\(([\w.]+)", text))
-        for program in re.findall(r"octopair_instruction_sets\((\w+)\)", text):
-            names |= {f"{program}.{instructions}" for instructions in ("AVX2", "SSE4")}
+        for program, *more in map(str.split, re.findall(r"octopair_instruction_sets\((\w[\w ]*)\)", text)):
+            names |= {f"{program}.{instructions}" for instructions in ("AVX2", "SSE4", *more)}
     return {name for name in names if "$" not in name}
 
 

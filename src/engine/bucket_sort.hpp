@@ -20,8 +20,8 @@
 
 #include "base/radix_sort.hpp"
 #include "base/tuning.hpp"
+#include "boxes/slotted_rows.hpp"
 #include "engine/pair_pages.hpp"
-#include "engine/slotted_rows.hpp"
 
 namespace octopair {
 

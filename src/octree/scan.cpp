@@ -163,7 +163,6 @@ public:
         if (runs_owner_ != octant) find_runs(octant, memory_.runs);
         memory_.next_runs.clear();
         if (octant + 1 < octree_.octants().size()) find_runs(octant + 1, memory_.next_runs);
-        ahead_ = RunPrefetcher(memory_.next_runs);
         context_.rule.join() ? scan_join(handed) : scan_self(handed);
         std::swap(memory_.runs, memory_.next_runs);
         runs_owner_ = octant + 1;
@@ -180,8 +179,7 @@ private:
         const std::size_t own = std::size_t(octree_.entry_count(octant_));
         if (own + handed.size() < 2) return;
         const bool laid_out = own <= tuning().scan.max_swept_list;
-        if (laid_out) memory_.own_set.assign(memory_.runs);
-        if (!laid_out) count_path(Path::own_too_large);
+        laid_out ? memory_.own_set.assign(memory_.runs) : count_path(Path::own_too_large);
         if (own > 1 && !(laid_out && try_own_sweep())) {
             const EntryList crowd = crowd_of({false, any_set}, {});
             scan_crowded({crowd, crowd, true, {}});
@@ -242,7 +240,8 @@ private:
     }
 
     bool try_own_sweep() {
-        const CellSweep sweep{memory_.own_set, memory_.own_set, SweepKind::self, &ahead_};
+        RunPrefetcher ahead(memory_.next_runs);
+        const CellSweep sweep{memory_.own_set, memory_.own_set, SweepKind::self, &ahead};
         bool done = try_sweep({sweep});
         for (unsigned axis = 1; !done && axis < 3; ++axis) {
             turn_own();
@@ -322,15 +321,13 @@ private:
 
     /// Sweeps the two sets against each other, along the first of three axes on which the sweep is cheap.
     bool try_cross_sweeps() {
-        const auto try_axis = [&] {
-            return try_sweep({{memory_.handed_set, memory_.own_set, SweepKind::cross},
-                              {memory_.own_set, memory_.handed_set, SweepKind::cross_strict}});
-        };
-        bool done = try_axis();
+        const CellSweep down{memory_.handed_set, memory_.own_set, SweepKind::cross};
+        const CellSweep up{memory_.own_set, memory_.handed_set, SweepKind::cross_strict};
+        bool done = try_sweep({down, up});
         for (unsigned axis = 1; !done && axis < 3; ++axis) {
             turn_own();
             memory_.handed_set.turn();
-            done = try_axis();
+            done = try_sweep({down, up});
             if (done) count_path(Path::swept_on_other_axis);
         }
         return done;
@@ -338,8 +335,7 @@ private:
 
     /// Runs the sweeps and returns true, unless they would test too many columns for each row.
     bool try_sweep(std::initializer_list<CellSweep> sweeps) {
-        std::uint64_t tests = 0;
-        std::size_t rows = 0;
+        std::uint64_t tests = 0, rows = 0;
         for (const CellSweep& sweep : sweeps) {
             tests += sampled_tests(sweep);
             rows += sweep.rows.size();
@@ -435,8 +431,7 @@ private:
     SweepChooser chooser_;
     OctantCells cells_;
     CertainGaps gaps_;
-    RunPrefetcher ahead_;  // the entries of the next octant
-    unsigned turns_ = 0;   // number of times that the own entries, and gaps_, were turned
+    unsigned turns_ = 0;  // number of times that the own entries, and gaps_, were turned
     CellPairMaker pair_maker_{context_, memory_.pair_maker};
     std::array<Crowd, 4> crowd_of_part_;  // by Part::number(); empty until they are needed
 };

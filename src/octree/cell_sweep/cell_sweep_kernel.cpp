@@ -4,7 +4,6 @@
 //   written, without a branch on whether there are any: dense scenes mispredict that branch.
 // - Hits are judged apart from the sweep, many at once: the entries of as many hits as a register has lanes are turned into registers of
 //   one number each.
-#define HWY_WANT_AVX3_DL  // AVX-512 with VBMI2, which can move bytes to the front of a register
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "octree/cell_sweep/cell_sweep_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -13,8 +12,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "boxes/simd_lanes-inl.hpp"
 #include "octree/cell_sweep/cell_sweep.hpp"
-#include "octree/simd_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace octopair {

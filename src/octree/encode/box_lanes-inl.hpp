@@ -12,8 +12,8 @@
 #include <span>
 #include <type_traits>
 
+#include "boxes/simd_lanes-inl.hpp"
 #include "octree/encode/box_locator.hpp"
-#include "octree/simd_lanes-inl.hpp"
 
 #if defined(OCTOPAIR_OCTREE_ENCODE_BOX_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef OCTOPAIR_OCTREE_ENCODE_BOX_LANES_INL_HPP

@@ -18,7 +18,7 @@
 
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octree/simd_lanes-inl.hpp"
+#include "boxes/simd_lanes-inl.hpp"
 #include "octree/sweep/sweep.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,14 +1,14 @@
 // SIMD version of write_group(). Highway compiles it for each instruction set.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "engine/slotted_rows_kernel.cpp"
+#define HWY_TARGET_INCLUDE "boxes/slotted_rows_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include <utility>
 
-#include "engine/slotted_rows.hpp"
-#include "engine/sorting_networks.hpp"
-#include "octree/simd_lanes-inl.hpp"
+#include "boxes/simd_lanes-inl.hpp"
+#include "boxes/slotted_rows.hpp"
+#include "boxes/sorting_networks.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace octopair {

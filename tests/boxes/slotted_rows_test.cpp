@@ -1,5 +1,5 @@
 // Tests the sort of short rows: its networks, its SIMD kernel against the scalar specification, and rows of all lengths.
-#include "engine/slotted_rows.hpp"
+#include "boxes/slotted_rows.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/sorting_networks.hpp"
+#include "boxes/sorting_networks.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {

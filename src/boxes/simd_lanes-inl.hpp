@@ -1,4 +1,4 @@
-// SIMD helpers of the octree's kernels, for the instruction set that Highway compiles.
+// SIMD helpers of kernels, for the instruction set that Highway compiles.
 //
 // Included by kernels after hwy/highway.h, once for each instruction set.
 #include <array>
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <type_traits>
 
-#ifndef OCTOPAIR_OCTREE_LANE_TABLE
-#define OCTOPAIR_OCTREE_LANE_TABLE
+#ifndef OCTOPAIR_BOXES_LANE_TABLE
+#define OCTOPAIR_BOXES_LANE_TABLE
 
 namespace octopair {
 
@@ -34,11 +34,11 @@ inline constexpr LaneTable lanes_in;
 
 #endif
 
-#if defined(OCTOPAIR_OCTREE_SIMD_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef OCTOPAIR_OCTREE_SIMD_LANES_INL_HPP
-#undef OCTOPAIR_OCTREE_SIMD_LANES_INL_HPP
+#if defined(OCTOPAIR_BOXES_SIMD_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef OCTOPAIR_BOXES_SIMD_LANES_INL_HPP
+#undef OCTOPAIR_BOXES_SIMD_LANES_INL_HPP
 #else
-#define OCTOPAIR_OCTREE_SIMD_LANES_INL_HPP
+#define OCTOPAIR_BOXES_SIMD_LANES_INL_HPP
 #endif
 
 HWY_BEFORE_NAMESPACE();

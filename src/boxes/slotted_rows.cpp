@@ -1,4 +1,4 @@
-#include "engine/slotted_rows.hpp"
+#include "boxes/slotted_rows.hpp"
 
 #include <algorithm>
 
