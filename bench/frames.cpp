@@ -7,7 +7,7 @@
 // time. Cases of few objects also show the time of a query for the objects that overlap a box. Processor time is more reliable when other programs use the machine. The case `memory` measures the memory of a
 // scene in separate processes. A tracker that finds other pairs than full detection is marked, and the exit status is
 // 1. A missed goal does not change the exit status, because times depend on the machine. `--quick` uses a tenth of the
-// objects and of the frames.
+// objects, but not below 1,000, and of the frames.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -53,6 +53,7 @@ std::string remark(const Track& track, unsigned frames) {
     if (track.differing > 0) {
         text += fmt::format("  DIFFERS in {} frames: {} pairs", track.differing, track.differs_pairs);
     }
+    if (track.differing_queries > 0) text += fmt::format("  OTHER ANSWERS in {} frames", track.differing_queries);
     return text;
 }
 
@@ -155,7 +156,8 @@ bool run_case(const FrameCase& which, const FramePlan& plan, Json& results) {
     const std::vector<Track> tracks = track(which, plan, tell);
     print(which, tracks, plan);
     results.push_back(case_json(which, tracks));
-    return std::all_of(tracks.begin(), tracks.end(), [](const Track& track) { return track.differing == 0; });
+    return std::all_of(tracks.begin(), tracks.end(),
+                       [](const Track& track) { return track.differing + track.differing_queries == 0; });
 }
 
 int run(const Request& request) {

@@ -76,7 +76,7 @@ void run_frame(std::vector<Runner>& runners, const Frame& frame) {
     }
 }
 
-/// Asks each tracker which objects overlap the boxes of some objects, other ones in each frame. Compares the answers.
+/// Finds with each tracker the objects that overlap some boxes, other ones in each frame. Compares the numbers found.
 void run_queries(std::vector<Runner>& runners, const FrameCase& which, std::span<const Box3f> boxes, unsigned frame) {
     std::vector<Box3f> asked(which.queries);
     for (std::size_t i = 0; i < asked.size(); ++i) asked[i] = boxes[(frame + 37 * i) % boxes.size()];
@@ -88,7 +88,7 @@ void run_queries(std::vector<Runner>& runners, const FrameCase& which, std::span
         if (!objects) continue;
         runner.track.query_seconds.push_back(times.wall / double(asked.size()));
         if (!expected) expected = objects;
-        if (*objects != *expected) ++runner.track.differing;
+        if (*objects != *expected) ++runner.track.differing_queries;
     }
 }
 

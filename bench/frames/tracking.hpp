@@ -33,6 +33,7 @@ struct Track {
     std::uint64_t pairs = 0;                ///< of the last frame
     std::uint64_t differing = 0;            ///< frames with other pairs than the first tracker's
     std::uint64_t differs_pairs = 0;        ///< pairs found in the first differing frame
+    std::uint64_t differing_queries = 0;    ///< frames with other answers than the first tracker's that has queries
 
     /// Returns the time that `share` of the frames do not exceed: 0.5 for the median, 1 for the slowest.
     double quantile(double share, Clock clock = Clock::wall) const;

@@ -123,7 +123,7 @@ struct Tuning {
         unsigned bucket_split_bits = 6;                 ///< log2 of the number of parts of a bucket that is split
         std::size_t sorted_at_once = 1 << 20;           ///< a bucket with more pairs is split
         std::size_t bucket_pairs = 1 << 17;             ///< expected number of pairs per bucket, at most
-        std::size_t slotted_pairs_per_row = 12;         ///< a bucket with more has no slots for its rows
+        std::size_t slotted_pairs_per_row = 12;         ///< a bucket with more on average has no slots
         unsigned sparse_row_bits = 5;      ///< log2 of rows per pair: with more, pairs are sorted by comparison
         std::size_t bitmap_columns = 64;   ///< a row with a pair in one of this many columns uses a bit map
         std::size_t min_radix_sort = 512;  ///< keys; fewer keys are sorted by comparison, not by a radix sort

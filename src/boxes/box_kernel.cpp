@@ -162,7 +162,7 @@ private:
     hn::Vec<Ends> origin_, sign_;
 };
 
-/// Rounds boxes, and remembers whether all were valid. Reads and writes up to two numbers beyond each box.
+/// Rounds boxes. all_good() says whether all were valid. Reads and writes up to two numbers beyond each box.
 template <bool widened, typename Real>
 class BoxRounder {
 public:

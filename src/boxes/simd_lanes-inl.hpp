@@ -51,6 +51,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <typename D>
 using LaneBits = std::conditional_t<(hn::MaxLanes(D()) > 32), std::uint64_t, std::uint32_t>;
 
+/// Returns a mask as bits: bit k is that of lane k.
 template <typename D, typename M>
 HWY_INLINE LaneBits<D> bits_of(D d, M mask) {
     std::uint8_t bytes[8] = {};

@@ -1,6 +1,6 @@
 // SlottedRows: sorts the pairs of a bucket whose rows are mostly short. A row is all pairs with the same first object.
 //
-// 1. One pass over the pairs puts the second objects of each row into 16 slots. What exceeds them is spilled to a list.
+// 1. One pass over the pairs puts the second objects of each row into its 16 slots. If a row has more, the others go to a list.
 // 2. The rows of a SIMD register are sorted together, by a sorting network over their slots, and written as pairs.
 //
 // The slots of a row are a cache line. Rows are sorted and written in groups of 16.

@@ -9,7 +9,7 @@
 
 namespace octopair {
 
-/// Puts the less of two numbers at `low`, the other one at `high`.
+/// Puts the smaller of two numbers at `low`, the other one at `high`.
 struct Exchange {
     std::uint8_t low, high;
 };

@@ -2,9 +2,9 @@
 //
 // 1. Each thread or worker scatters the pairs that it finds into its own buckets. A bucket is a string of pages.
 // 2. Each bucket is gathered from all threads or workers and sorted independently, by one of three ways:
-//      rows are mostly short   their objects `b` are put into slots, and sorted by networks (slotted_rows.hpp)
-//      rows are mostly empty   the pairs are sorted as they are
-//      otherwise               pairs are counted by `a` and moved to their rows, then the objects `b` of each row are sorted
+//      few pairs for its rows   the pairs are sorted as they are
+//      mostly short rows        the objects `b` of a row are put into slots, and sorted by networks (boxes/slotted_rows.hpp)
+//      otherwise                pairs are counted by `a` and moved to their rows, then the objects `b` of each row are sorted
 //
 // Invariants
 //   Every key in bucket i is less than every key in bucket i + 1.

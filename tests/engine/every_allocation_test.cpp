@@ -46,6 +46,22 @@ TEST_P(EveryAllocation, OfASearchMayFail) {
     EXPECT_GT(failures, 20u);
 }
 
+/// An octant that gets entries from above needs memory for a second set, which the next search of an octant finds as it was left.
+TEST_P(EveryAllocation, OfASearchWithHandedDownEntriesMayFail) {
+    const std::vector<Box3f> boxes = samples::make_scene("world10", 5000, 1);
+    const std::vector<Pair> pairs = find_pairs(boxes);
+    const auto find = [&](Made& made) {
+        made.list = {};
+        made.engine->find_pairs(Objects{boxes}, made.list, {});
+    };
+    const std::uint64_t failures = fail_every_allocation([&] { return made(); }, find,
+                                                         [&](Made& made, bool failed) {
+                                                             if (failed) find(made);
+                                                             EXPECT_EQ(made.list.to_vector(), pairs);
+                                                         });
+    EXPECT_GT(failures, 20u);
+}
+
 TEST_P(EveryAllocation, OfAVerifiedJoinMayFail) {
     const Options verified{.margin = 0.01, .verify = true};
     std::vector<Pair> pairs;

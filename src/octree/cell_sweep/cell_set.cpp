@@ -23,15 +23,17 @@ void CellSet::turn() {
 }
 
 void CellSet::assign(Runs runs) {
-    size_ = 0;
-    for (const auto run : runs) size_ += run.size();
+    size_ = 0;  // until all memory is allocated
     has_planes_ = false;
-    entries_.resize_discard(size_ + entries_read_beyond);
-    buckets_.resize(size_);
+    std::size_t size = 0;
+    for (const auto run : runs) size += run.size();
+    entries_.resize_discard(size + entries_read_beyond);
+    buckets_.resize(size);
     const unsigned max_bits = unsigned(std::bit_width(tuning().sweep.max_cell_buckets)) - 1;
-    const unsigned bits = std::min({cell_bits, max_bits, unsigned(std::bit_width(size_ / 2))});
+    const unsigned bits = std::min({cell_bits, max_bits, unsigned(std::bit_width(size / 2))});
     bucket_shift_ = cell_bits - bits;
     bucket_begins_.assign((std::size_t(1) << bits) + 1, 0);
+    size_ = size;
     const std::span<std::uint32_t> ends = std::span(bucket_begins_).subspan(1);
     std::uint16_t* bucket = buckets_.data();
     for (const auto run : runs) {
@@ -50,10 +52,11 @@ void CellSet::assign(Runs runs) {
 }
 
 void CellSet::make_planes() {
-    if (std::exchange(has_planes_, true)) return;
+    if (has_planes_) return;
     stride_ = size_ + bytes_read_beyond;
     planes_.resize_discard(cell_planes * stride_);
     write_planes({entries_.data(), size_}, planes_.data(), stride_);
+    has_planes_ = true;
 }
 
 }  // namespace octopair

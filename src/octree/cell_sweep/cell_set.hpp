@@ -3,8 +3,8 @@
 // Layout
 //   Entries are in buckets by their low cell on the first axis, in a bucket by their position in the list.
 //   Planes have what a sweep reads of the entries: for each end on the two other axes, an array of its 8 most significant bits.
-//   Behind the last entry are entries and bytes that a sweep may read. An entry behind the last one reaches the end of the octant, so that
-//   the columns that it is tested against end with the set.
+//   Behind the last entry are entries and bytes that a sweep may read. An entry behind the last one reaches the end of the octant, so its
+//   window ends with the set.
 #pragma once
 
 #include <array>

@@ -47,7 +47,8 @@ struct CellSweep {
     std::size_t block() const { return kind == SweepKind::self ? row_block : 1; }
 };
 
-/// Position at which a sweep continues: the next block of rows, and the next column for this block. Rows before `row` are done.
+/// Position at which a sweep continues: the next block of rows (CellSweep::block()), and the next column for this block. Rows before `row`
+/// are done.
 struct CellCursor {
     std::size_t row = 0;
     std::size_t column = 0;
@@ -61,7 +62,7 @@ inline constexpr std::size_t min_hit_room = row_block * column_group + column_gr
 inline constexpr std::size_t rows_per_call = 4096;
 
 /// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` has no room for those of another group, or
-/// after rows_per_call rows. The sweep is done when cursor.row is not below the number of rows.
+/// after rows_per_call rows, unless the version is scalar. The sweep is done when cursor.row is not below the number of rows.
 /// Requires: `hits` has room for at least min_hit_room. The sets have planes, which cell_hits_scalar() does not read.
 std::size_t cell_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);
 std::size_t cell_hits_scalar(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);
@@ -115,7 +116,8 @@ public:
     }
     std::size_t end(std::size_t row) const {
         const std::size_t end = begins_[(rows_[row].high(0) >> column_shift_) + 1];
-        return planted(Fault::cell_window_end_open) && end > row + 1 ? end - 1 : end;
+        const bool cut = planted(Fault::cell_window_end_open) && kind_ == SweepKind::self && end > row + 1;
+        return cut ? end - 1 : end;
     }
 
 private:

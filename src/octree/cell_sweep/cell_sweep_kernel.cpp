@@ -68,11 +68,11 @@ struct Planes {
     const std::uint8_t *low1, *high1, *low2, *high2;
 };
 
-/// Adjacent columns, as many as a group has or fewer.
+/// `width` adjacent columns: 64, which are a group, or the first 32.
 template <std::size_t width>
-class Columns {
+class ColumnGroup {
 public:
-    HWY_INLINE Columns(const Planes& planes, std::size_t first) {
+    HWY_INLINE ColumnGroup(const Planes& planes, std::size_t first) {
         for (std::size_t i = 0; i < registers; ++i, first += lanes) {
             low1_[i] = hn::LoadU(D(), planes.low1 + first), high1_[i] = hn::LoadU(D(), planes.high1 + first);
             low2_[i] = hn::LoadU(D(), planes.low2 + first), high2_[i] = hn::LoadU(D(), planes.high2 + first);
@@ -98,8 +98,8 @@ private:
     hn::Vec<D> low1_[registers], high1_[registers], low2_[registers], high2_[registers];
 };
 
-/// Writes `first` + k for each bit k of a set, ascending, and returns their end. `count`: number of columns that may be in the set. May write
-/// column_group numbers, of which the next call overwrites those behind the end.
+/// Writes `first` + k for each bit k of a set, ascending, and returns their end. `count`: number of columns that may be in the set. May
+/// write column_group numbers, of which the next call overwrites those behind the end.
 #if HWY_TARGET <= HWY_AVX3_DL
 
 template <std::size_t width>
@@ -181,17 +181,17 @@ struct SweepPlanes {
     Planes rows, columns;
 };
 
-/// Tests rows against the columns [base, base + width) of their windows. Writes the hits and returns their end. `first`: the columns begin
-/// the windows of a self sweep, so row r has no column before its successor.
-template <std::size_t width, bool first, std::size_t count>
+/// Tests rows against the columns [base, base + width) of their windows. Writes the hits and returns their end. `begins`: the columns
+/// begin the windows of a self sweep, so row r has no column before its successor.
+template <std::size_t width, bool begins, std::size_t count>
 HWY_INLINE CellHit* test_rows(const SweepPlanes& planes, const RowBlock<count>& block, std::size_t base, CellHit* out) {
-    const Columns<width> columns(planes.columns, base);
-    const auto some = std::uint32_t(std::min<std::size_t>(block.end - base, width));
+    const ColumnGroup<width> columns(planes.columns, base);
+    const auto in_windows = std::uint32_t(std::min<std::size_t>(std::max(block.end, base) - base, width));
     for (std::size_t r = 0; r < count; ++r) {
-        auto asked = first_columns<width>(first ? block.ends[r] - base : std::max(block.ends[r], base) - base);
-        if (first) asked &= ~ColumnBits<width>(0) << r;
-        const auto hits = columns.overlapping(planes.rows, block.row + r) & asked;
-        out = write_hits<width>(hits, some, CellHit((block.row + r) << 16 | base), out);
+        auto window = first_columns<width>(std::max(block.ends[r], base) - base);
+        if (begins) window &= ~ColumnBits<width>(0) << r;
+        const auto hits = columns.overlapping(planes.rows, block.row + r) & window;
+        out = write_hits<width>(hits, in_windows, CellHit((block.row + r) << 16 | base), out);
     }
     return out;
 }
@@ -208,7 +208,8 @@ std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<Cell
     const std::size_t rows = sweep.rows.size(), rows_end = std::min(rows, row + rows_per_call);
     for (; row < rows_end && at <= last; row += row_block, in_row = false) {
         const RowBlock<row_block> block(windows, row);
-        const std::size_t end = block.end;
+        const std::size_t end =
+            std::max(block.end, row + 1);  // a row whose box changed while it was read may end before it begins
         if (!in_row) {
             ahead.fetch_line();
             base = row + 1;
@@ -259,11 +260,6 @@ std::size_t cell_hits_simd(const CellSweep& sweep, CellCursor& cursor, std::span
     return sweep.kind == SweepKind::self ? self_hits(sweep, cursor, hits) : cross_hits(sweep, cursor, hits);
 }
 
-/// Loads the entries at some positions, one in every second number from `at` on: register i gets number i of all entries.
-HWY_INLINE void load_entries(const CellEntry* entries, const std::uint16_t* at, Lanes (&registers)[4]) {
-    load_items(registers, [&](std::size_t i) { return entries[at[2 * i]].ends.data(); });
-}
-
 void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const CertainGaps& gaps, JudgedHits& judged) {
     const Words d;
     const SignedHalves halves;
@@ -276,9 +272,9 @@ void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const Cert
     std::uint32_t* doubtful = judged.doubtful + judged.doubtful_count;
     for (std::size_t i = 0; i < hits.size(); i += lanes) {
         Lanes rows[4], columns[4];
-        const auto* const positions = reinterpret_cast<const std::uint16_t*>(hits.data() + i);
-        load_entries(sweep.rows.entries(), positions + 1, rows);
-        load_entries(sweep.columns.entries(), positions, columns);
+        const CellHit* const some = hits.data() + i;
+        load_items(rows, [&](std::size_t k) { return sweep.rows.entries()[some[k] >> 16].ends.data(); });
+        load_items(columns, [&](std::size_t k) { return sweep.columns.entries()[some[k] & 0xFFFFu].ends.data(); });
         auto apart = hn::Zero(d), doubts = none_certain;
         for (std::size_t k = 0; k < 3; ++k) {
             // Lower half: row's low - column's high. Upper half: row's high - column's low. Negated where it is a depth.
@@ -354,7 +350,7 @@ void write_planes_simd(std::span<const CellEntry> entries, std::uint8_t* planes,
     constexpr int dropped_bits = cell_bits - 8;
     for (std::size_t i = 0; i < entries.size(); i += hn::Lanes(d)) {
         Lanes words[4];
-        load_items(words, [&](std::size_t k) { return entries[i + k].ends.data(); });
+        load_items(words, [&](std::size_t k) { return entries.data()[i + k].ends.data(); });
         const auto store = [&](CellPlane end, Lanes cells) HWY_ATTR {
             const auto low_byte = hn::And(cells, hn::Set(d, 0xFFu));
             hn::StoreU(hn::U8FromU32(low_byte), bytes, planes + std::size_t(end) * stride + i);
