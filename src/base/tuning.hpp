@@ -87,6 +87,7 @@ struct Tuning {
         std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times groups of columns per call: some milliseconds
         std::size_t hits = 1024;                ///< masks of hits that a call of the kernel may write; at least 8
         std::size_t cell_hits = 2048;           ///< number of hits whose pairs are decided at a time; at least 320
+        std::size_t cell_rows_per_call = 4096;  ///< rows of a sweep on cells per call, of milliseconds; a multiple of 4
         std::size_t max_cell_buckets = 2048;    ///< maximum number of buckets of a sort by cells; a power of two
         std::size_t pairs = 2048;               ///< pairs that are buffered before they are written
         std::size_t max_buckets = 4096;         ///< maximum number of buckets: they stay in the L1 cache
@@ -124,6 +125,7 @@ struct Tuning {
         std::size_t sorted_at_once = 1 << 20;           ///< a bucket with more pairs is split
         std::size_t bucket_pairs = 1 << 17;             ///< expected number of pairs per bucket, at most
         std::size_t slotted_pairs_per_row = 12;         ///< a bucket with more on average has no slots
+        unsigned max_slotted_row_bits = 14;             ///< log2 of rows: slots of more rows exceed the L2 cache
         unsigned sparse_row_bits = 5;      ///< log2 of rows per pair: with more, pairs are sorted by comparison
         std::size_t bitmap_columns = 64;   ///< a row with a pair in one of this many columns uses a bit map
         std::size_t min_radix_sort = 512;  ///< keys; fewer keys are sorted by comparison, not by a radix sort

@@ -34,7 +34,6 @@ BucketPlan::BucketPlan(const AscendingBounds& bounds, unsigned fillers) : keys_(
 
 namespace {
 
-constexpr unsigned max_slotted_row_bits = 14;    // slots of more rows need more memory than the L2 cache has
 constexpr std::size_t columns_read_beyond = 16;  // by sort_rows()
 static_assert(SlottedRows::read_beyond >= columns_read_beyond);
 
@@ -111,7 +110,7 @@ void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, CallStat
     if (size << tuning().output.sparse_row_bits >> row_bits == 0) return sort_sparse(strings, state);
     const std::size_t most_in_slots =
         std::min(tuning().output.slotted_pairs_per_row << row_bits, SlottedRows::max_pairs);
-    const bool in_slots = row_bits <= max_slotted_row_bits && size <= most_in_slots;
+    const bool in_slots = row_bits <= tuning().output.max_slotted_row_bits && size <= most_in_slots;
     in_slots ? sort_in_slots(strings, bits, state) : sort_rows_at_once(strings, bits, state);
 }
 

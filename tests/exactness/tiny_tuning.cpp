@@ -161,6 +161,8 @@ void shrink_later(Tuning& tuning, Shrinker& to) {
     to.one_of<std::size_t>(tuning.dynamic.range_entries, {1, 10, 100});
     tuning.dynamic.min_range_entries = 1;
     to.one_of<std::size_t>(tuning.output.slotted_pairs_per_row, {0, 2, 12});
+    to.one_of<unsigned>(tuning.output.max_slotted_row_bits, {2, 14});
+    to.one_of<std::size_t>(tuning.sweep.cell_rows_per_call, {4, 8, 4096});
 }
 
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.

@@ -11,6 +11,7 @@
 #include <set>
 #include <vector>
 
+#include "base/tuning.hpp"
 #include "boxes/box_source.hpp"
 #include "support/compare.hpp"
 
@@ -134,7 +135,7 @@ TEST(CellSweep, EntriesThatEndBeforeTheyBeginHitOnlyColumnsOfTheSet) {
 
 TEST(CellSweep, CallsTakeABoundedNumberOfRows) {
     std::mt19937 random(7);
-    const CellSet rows = sorted_set(random_entries(random, 2 * rows_per_call + 10, 0, 40));
+    const CellSet rows = sorted_set(random_entries(random, 2 * tuning().sweep.cell_rows_per_call + 10, 0, 40));
     const CellSet columns = sorted_set(random_entries(random, 100, 10'000, 40));
     for (const SweepKind kind : {SweepKind::self, SweepKind::cross, SweepKind::cross_strict}) {
         const CellSweep sweep{rows, kind == SweepKind::self ? rows : columns, kind};
@@ -142,7 +143,7 @@ TEST(CellSweep, CallsTakeABoundedNumberOfRows) {
         std::vector<CellHit> hits(room);
         CellCursor cursor;
         (void)cell_hits(sweep, cursor, hits);
-        EXPECT_EQ(cursor.row, rows_per_call);
+        EXPECT_EQ(cursor.row, tuning().sweep.cell_rows_per_call);
         ASSERT_EQ(run(cell_hits, sweep, room), run(cell_hits_scalar, sweep, room));
     }
 }

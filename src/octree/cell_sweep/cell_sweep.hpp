@@ -58,11 +58,9 @@ struct CellCursor {
 /// Minimum room for hits of cell_hits(): a group's, and 64 that SIMD versions may write behind the last hit.
 inline constexpr std::size_t min_hit_room = row_block * column_group + column_group;
 
-/// Maximum number of rows that a call of cell_hits() begins. So a call takes some milliseconds, and a stop request is noticed soon.
-inline constexpr std::size_t rows_per_call = 4096;
-
-/// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` has no room for those of another group, or
-/// after rows_per_call rows, unless the version is scalar. The sweep is done when cursor.row is not below the number of rows.
+/// Continues a sweep at `cursor` and writes hits. Returns their number. Stops early if `hits` has no room for those of another group. Also
+/// stops after tuning().sweep.cell_rows_per_call rows, unless the version is scalar. The sweep is done when cursor.row is not below the
+/// number of rows.
 /// Requires: `hits` has room for at least min_hit_room. The sets have planes, which cell_hits_scalar() does not read.
 std::size_t cell_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);
 std::size_t cell_hits_scalar(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/tuning.hpp"
 #include "boxes/simd_lanes-inl.hpp"
 #include "octree/cell_sweep/cell_sweep.hpp"
 
@@ -205,7 +206,7 @@ std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<Cell
     CellHit* const last = hits.data() + (hits.size() - min_hit_room);
     auto [row, base, in_row] = cursor;
     RunPrefetcher ahead = sweep.ahead == nullptr ? RunPrefetcher() : *sweep.ahead;  // a copy stays in registers
-    const std::size_t rows = sweep.rows.size(), rows_end = std::min(rows, row + rows_per_call);
+    const std::size_t rows = sweep.rows.size(), rows_end = std::min(rows, row + tuning().sweep.cell_rows_per_call);
     for (; row < rows_end && at <= last; row += row_block, in_row = false) {
         const RowBlock<row_block> block(windows, row);
         const std::size_t end =
@@ -240,7 +241,7 @@ std::size_t cross_hits(const CellSweep& sweep, CellCursor& cursor, std::span<Cel
     CellHit* at = hits.data();
     CellHit* const last = hits.data() + (hits.size() - min_hit_room);
     auto [row, base, in_row] = cursor;
-    const std::size_t rows_end = std::min(sweep.rows.size(), row + rows_per_call);
+    const std::size_t rows_end = std::min(sweep.rows.size(), row + tuning().sweep.cell_rows_per_call);
     for (; row < rows_end; ++row, in_row = false) {
         const RowBlock<1> block(windows, row);
         if (!in_row) base = windows.begin_crossing(row);
