@@ -110,6 +110,16 @@ class Costs:
         return process.returncode == 0
 
 
+def build_options(stages):
+    """Returns the options of CMake for a build of stages that share a preset."""
+    on = {option for stage in stages for option in stage.options}
+    # All builds have the viewer, so that no stage compiles the program again. They also have the parts that scripts/run leaves out.
+    parts = ("OCTOPAIR_BUILD_TESTS", "OCTOPAIR_WITH_VIEWER", "OCTOPAIR_WITH_SERVICE", "OCTOPAIR_WITH_MPI")
+    return [*(f"-D{option}=ON" for option in parts),
+            *(f"-D{option}={'ON' if option in on else 'OFF'}" for option in ("OCTOPAIR_BUILD_BENCHMARKS", "OCTOPAIR_WITH_PYTHON")),
+            f"-DCMAKE_CXX_FLAGS={max(stage.compiled for stage in stages)}"]
+
+
 def show(log):
     """Prints a file of output."""
     sys.stdout.flush()
@@ -156,17 +166,12 @@ class Run:
     def build(self, preset):
         """Configures and builds what the stages of a preset need."""
         stages = [stage for stage in self.stages.values() if stage.preset == preset]
-        on = {option for stage in stages for option in stage.options}
-        # All builds have the viewer, so that no stage compiles the program again.
-        options = ["-DOCTOPAIR_BUILD_TESTS=ON", "-DOCTOPAIR_WITH_VIEWER=ON",
-                   *(f"-D{option}={'ON' if option in on else 'OFF'}" for option in ("OCTOPAIR_BUILD_BENCHMARKS", "OCTOPAIR_WITH_PYTHON")),
-                   f"-DCMAKE_CXX_FLAGS={max(stage.compiled for stage in stages)}"]
         targets = [] if any(not stage.targets for stage in stages) else sorted({name for stage in stages for name in stage.targets})
         log = BUILD / "results" / f"build-{preset}.log"
         log.unlink(missing_ok=True)
         costs = self.builds[preset]
         nice = 10 if self.several else 0
-        built = costs.add(["cmake", "-S", str(ROOT), "--preset", preset, *options], log)
+        built = costs.add(["cmake", "-S", str(ROOT), "--preset", preset, *build_options(stages)], log)
         if built:
             built = costs.add(["cmake", "--build", str(BUILD / preset), *(["--target", *targets] if targets else [])],
                               log if self.several else None, nice)

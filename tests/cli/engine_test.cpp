@@ -185,8 +185,14 @@ TEST_F(Engines, RefusesOptionsThatConflict) {
              {"--engine local --workers 2", "--workers: only with --engine processes; the local engine has --threads"},
              {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
+#ifdef OCTOPAIR_WITH_MPI
              {"--engine mpi --workers 2", "--workers: not with --engine mpi; mpirun -n sets the number of ranks"},
-             {"--engine threads", "--engine: 'threads' is not a valid value; valid values: local, processes, mpi"}}) {
+             {"--engine threads", "--engine: 'threads' is not a valid value; valid values: local, processes, mpi"}
+#else
+             {"--engine mpi", "--engine: this octopair was built without 'mpi'; it has: local, processes"},
+             {"--engine threads", "--engine: 'threads' is not a valid value; valid values: local, processes"}
+#endif
+         }) {
         const Outcome outcome = run("detect a.npy " + arguments);
         EXPECT_EQ(outcome.status, 2) << arguments;
         EXPECT_EQ(outcome.err, "octopair: " + message + "\n");

@@ -161,11 +161,19 @@ TEST_F(Failure, NoOutputReplacesAnInput) {
     save_boxes("b.npy", {0, 0.5f});
     const std::string before = content("a.npy");
     ASSERT_EQ(shell("ln -s a.npy link.npy && ln a.npy hard.npy && mkdir d && ln -s ../a.npy d/up.npy").status, 0);
-    for (const std::string wrong :
-         {"a.npy --output a.npy", "a.npy --output ./a.npy", "a.npy --output link.npy", "link.npy --output hard.npy",
-          "a.npy --output d/up.npy", "a.npy --stats a.npy", "b.npy a.npy --output a.npy",
-          "b.npy --against a.npy --output a.npy", "b.npy --padding a.npy --output a.npy",
-          "b.npy --engine unix:s --token-file a.npy --output a.npy"}) {
+    std::vector<std::string> all_wrong = {"a.npy --output a.npy",
+                                          "a.npy --output ./a.npy",
+                                          "a.npy --output link.npy",
+                                          "link.npy --output hard.npy",
+                                          "a.npy --output d/up.npy",
+                                          "a.npy --stats a.npy",
+                                          "b.npy a.npy --output a.npy",
+                                          "b.npy --against a.npy --output a.npy",
+                                          "b.npy --padding a.npy --output a.npy"};
+#ifdef OCTOPAIR_WITH_SERVICE
+    all_wrong.emplace_back("b.npy --engine unix:s --token-file a.npy --output a.npy");
+#endif
+    for (const std::string& wrong : all_wrong) {
         const Outcome outcome = run("detect " + wrong);
         EXPECT_EQ(outcome.status, 2) << wrong;
         EXPECT_TRUE(has_text(outcome.err, "which would be replaced"));

@@ -108,7 +108,11 @@ TEST_F(Usage, UnknownSubcommandsAreNamed) {
 /// A script whose variable is not set writes an empty word. Without a join, a file or tokens the program would do something else.
 TEST_F(Usage, EmptyValuesAreRefused) {
     save_boxes("a.npy", {0});
-    for (const std::string option : {"--against", "--padding", "--output", "--stats", "--token-file"}) {
+    std::vector<std::string> options = {"--against", "--padding", "--output", "--stats"};
+#ifdef OCTOPAIR_WITH_SERVICE
+    options.emplace_back("--token-file");
+#endif
+    for (const std::string& option : options) {
         EXPECT_EQ(run("detect a.npy " + option + " ''").err,
                   "octopair: " + option + ": must not be empty (see octopair --help)\n");
         EXPECT_EQ(run("detect a.npy " + option + "=").status, 2) << option;
