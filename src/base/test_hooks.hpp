@@ -45,9 +45,10 @@ namespace octopair {
     path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell) \
     path(unit_of_leaf) path(unit_of_inner) \
     /* engine/ */ \
-    path(list_block_full) path(sparse_bucket_sorted) path(bucket_sorted) path(bucket_in_slots) path(bucket_split) path(long_row_sorted) \
-    path(row_in_bitmap) path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote) \
-    path(stream_lead_held) path(stream_lead_full) path(stream_helper_full) path(radix_sorted) \
+    path(list_block_full) path(sparse_bucket_sorted) path(bucket_sorted) path(bucket_in_slots) path(bucket_split) \
+    path(slotted_rows_in_page) path(slotted_rows_staged) path(slots_exceeded) path(long_row_sorted) path(row_in_bitmap) \
+    path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote) path(stream_lead_held) \
+    path(stream_lead_full) path(stream_helper_full) path(radix_sorted) \
     /* engine/processes/ */ \
     path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) \
     /* engine/mpi/ */ \
@@ -76,7 +77,7 @@ enum class Fault : unsigned {
     begins_bit_cleared,       ///< a ghost loses the class bits that it brought into a nested octree
     octant_border_open,       ///< a box that ends in the first cell of an octant is not stored in that octant
     window_end_open,          ///< a sweep does not test a column that begins where the rows of a block end
-    cell_window_end_open,     ///< a sweep on cells skips a column that begins in the last cell of a block of rows
+    cell_window_end_open,     ///< a sweep of one set on cells skips the last column of each row's window
     cell_gap_too_small,       ///< a hit whose ends are in equal cells counts as a pair without an exact test
     tile_end_open,            ///< a sweep skips a tile that begins where a tile of rows ends
     handed_to_wrong_child,    ///< an entry is handed down to an octant that it does not touch

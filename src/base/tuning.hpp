@@ -10,7 +10,8 @@
 // Constants that are defined elsewhere, with their reasons:
 //   formats of files and memory (recordings, memory shared with workers, octal codes, keys, blocks of two cache lines): they define a
 //     layout, and choose no path
-//   widths of registers, the arithmetic of rounding, 8 entries per box: proofs depend on them
+//   widths of registers, rows and columns that are tested together, slots of a row, the arithmetic of rounding, 8 entries per box:
+//     kernels and proofs depend on them
 //   prefetch distances, the amount of memory committed at once: no path depends on them
 //   weights that distribute work among ranks (engine/mpi/partition/octant_owners.cpp): any weights give the same result
 //   timeouts, polling intervals, retries of worker processes: tests of faults have their own plans
@@ -79,15 +80,16 @@ struct Tuning {
 
     /// How sets of boxes are sorted and swept (octree/sweep/recursive_sweep.cpp, octree/sweep/start_order.cpp, sweep kernels).
     struct Sweep {
-        std::size_t tile = 4096;                ///< boxes per tile: their arrays stay in the L2 cache
-        std::size_t small_set = 512;            ///< a set of at most this many boxes is always swept
-        std::uint64_t cheap_tests = 64;         ///< a sweep with at most this many tests per box is always good
-        std::uint64_t tests_per_pair = 16;      ///< a sweep with at most this many per expected pair is good, too
-        std::size_t large_join = 1 << 15;       ///< a join of more boxes is divided among threads
-        std::size_t tests_per_call = 1 << 20;   ///< blocks of rows times groups of columns per call: some milliseconds
-        std::size_t hits = 1024;                ///< masks of hits that a call of the kernel may write; at least 8
-        std::size_t cell_hits = 2048;           ///< number of hits whose pairs are decided at a time; at least 320
-        std::size_t cell_rows_per_call = 4096;  ///< rows of a sweep on cells per call, of milliseconds; a multiple of 4
+        std::size_t tile = 4096;               ///< boxes per tile: their arrays stay in the L2 cache
+        std::size_t small_set = 512;           ///< a set of at most this many boxes is always swept
+        std::uint64_t cheap_tests = 64;        ///< a sweep with at most this many tests per box is always good
+        std::uint64_t tests_per_pair = 16;     ///< a sweep with at most this many per expected pair is good, too
+        std::size_t large_join = 1 << 15;      ///< a join of more boxes is divided among threads
+        std::size_t tests_per_call = 1 << 20;  ///< blocks of rows times groups of columns per call: some milliseconds
+        std::size_t hits = 1024;               ///< masks of hits that a call of the kernel may write; at least 8
+        std::size_t cell_hits = 2048;          ///< number of hits whose pairs are decided at a time; at least 320
+        std::size_t cell_rows_per_call =
+            4096;  ///< maximum rows per call of a sweep on cells, which then takes milliseconds
         std::size_t max_cell_buckets = 2048;    ///< maximum number of buckets of a sort by cells; a power of two
         std::size_t pairs = 2048;               ///< pairs that are buffered before they are written
         std::size_t max_buckets = 4096;         ///< maximum number of buckets: they stay in the L1 cache

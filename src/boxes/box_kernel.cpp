@@ -1,5 +1,5 @@
 // SIMD versions of the functions of box_kernel.hpp. Highway compiles them for each instruction set. The six numbers of a box
-// are read into two registers that overlap.
+// are read into two registers that overlap, or into one of AVX-512.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/box_kernel.cpp"
 #include <hwy/cache_control.h>
@@ -89,7 +89,7 @@ bool bound_one(const Triangle3d& triangle, Box3f& box) {
 
 #if HWY_TARGET <= HWY_AVX2
 
-using Doubles = hn::FixedTag<double, 4>;  // one end of a box, and a fourth number whose results are discarded
+using Doubles = hn::FixedTag<double, 4>;  // three coordinates, and a fourth number whose results are discarded
 
 /// SIMD version of finite_float_above() (geometry/rounding.hpp).
 HWY_INLINE hn::Vec<hn::FixedTag<float, 4>> round_up_simd(hn::Vec<Doubles> value) {

@@ -218,7 +218,7 @@ bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-PlainBoxes BoxSource::plain(std::size_t begin, std::span<Box3f> room) const {
+Float32Boxes BoxSource::float32_boxes(std::size_t begin, std::span<Box3f> room) const {
     if (join()) return {};
     const auto first_object = std::uint32_t(begin);
     if (form_.exact) {

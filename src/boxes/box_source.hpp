@@ -25,7 +25,7 @@
 namespace octopair {
 
 /// Float32 boxes of some objects: those of the caller, or boxes that were rounded.
-struct PlainBoxes {
+struct Float32Boxes {
     std::span<const Box3f> boxes;
     std::uint32_t first_object = 0;          ///< number of the first object; the other numbers follow it
     const std::uint32_t* objects = nullptr;  ///< if not null: the number of each object, in place of `first_object`
@@ -43,9 +43,9 @@ public:
     virtual std::size_t size() const = 0;
     /// Writes the entries [begin, begin + out.size()). Returns false if one of the objects is not a valid box.
     virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
-    /// Returns the boxes [begin, begin + room.size()): those of the caller, without a check of their values, or boxes rounded to `room`.
-    /// Returns no boxes unless the entries have these bounds, and no bit in their masks.
-    virtual PlainBoxes plain(std::size_t begin, std::span<Box3f> room) const {
+    /// Returns the boxes [begin, begin + room.size()): those of the caller, without a check of their values, or rounded boxes, stored in
+    /// `room`. Returns no boxes unless the entries have these bounds, and no bit in their masks.
+    virtual Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const {
         (void)begin, (void)room;
         return {};
     }
@@ -93,7 +93,7 @@ public:
 
     std::size_t size() const override { return first_size_ + second_size_; }
     bool load(std::size_t begin, std::span<Entry> out) const override;
-    PlainBoxes plain(std::size_t begin, std::span<Box3f> room) const override;
+    Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override;
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override;
 
     bool join() const override { return second_ != nullptr; }

@@ -12,8 +12,7 @@
 
 namespace octopair {
 
-/// Table of the lanes in each set of eight lanes, for instruction sets without an instruction that moves the lanes of a set to the front.
-/// It replaces Highway's own table, which g++ 12 copies on each use.
+/// Table of the lanes in each set of eight lanes. It moves the lanes of a set to the front of registers of at most eight lanes. It replaces Highway's own table, which g++ 12 copies on each use.
 struct LaneTable {
     static constexpr std::size_t lanes = 8;
     // Arrays by set. A set is a bit mask of lanes.
@@ -47,16 +46,16 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A bit mask of the lanes of a register.
-template <typename D>
-using LaneBits = std::conditional_t<(hn::MaxLanes(D()) > 32), std::uint64_t, std::uint32_t>;
+/// A bit mask of `count` lanes.
+template <std::size_t count>
+using BitMask = std::conditional_t<(count > 32), std::uint64_t, std::uint32_t>;
 
 /// Returns a mask as bits: bit k is that of lane k.
 template <typename D, typename M>
-HWY_INLINE LaneBits<D> bits_of(D d, M mask) {
+HWY_INLINE BitMask<hn::MaxLanes(D())> bits_of(D d, M mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, mask, bytes);
-    LaneBits<D> bits;
+    BitMask<hn::MaxLanes(D())> bits;
     std::memcpy(&bits, bytes, sizeof(bits));
     return bits;
 }

@@ -4,7 +4,7 @@
 
 namespace octopair {
 
-void write_group_scalar(const RowGroup& group, Pair* out) {
+void sort_group_scalar(const RowGroup& group, Pair* out) {
     for (std::size_t row = 0; row < row_group; ++row) {
         const std::size_t size = group.counts[row];
         if (size > row_slots) continue;

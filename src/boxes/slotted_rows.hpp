@@ -5,7 +5,7 @@
 //
 // The slots of a row are a cache line. Rows are sorted and written in groups of 16.
 //
-// write_group_scalar() is the specification of the SIMD version (slotted_rows_kernel.cpp).
+// sort_group_scalar() is the specification of the SIMD version (slotted_rows_kernel.cpp).
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct RowGroup {
 };
 
 /// Sorts the second objects of each row that is not long, and writes the pairs, row after row. May write `row_slots` pairs behind them.
-void write_group(const RowGroup& group, Pair* out);
-void write_group_scalar(const RowGroup& group, Pair* out);
+void sort_group(const RowGroup& group, Pair* out);
+void sort_group_scalar(const RowGroup& group, Pair* out);
 
 /// Thread safety: one thread at a time.
 class SlottedRows {

@@ -1,4 +1,4 @@
-// SIMD version of write_group(). Highway compiles it for each instruction set.
+// SIMD version of sort_group(). Highway compiles it for each instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "boxes/slotted_rows_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-void write_group_simd(const RowGroup& group, Pair* out) { write_group_scalar(group, out); }
+void sort_group_simd(const RowGroup& group, Pair* out) { sort_group_scalar(group, out); }
 
 #else
 
@@ -72,9 +72,10 @@ HWY_INLINE Pair* write_lanes(const RowGroup& group, std::size_t first_row, const
     return out;
 }
 
-void write_group_simd(const RowGroup& group, Pair* out) {
+void sort_group_simd(const RowGroup& group, Pair* out) {
     const Words d;
     const hn::Rebind<std::uint16_t, Words> halves;
+    static_assert(row_group % max_lanes == 0);
     for (std::size_t row = 0; row < row_group; row += hn::Lanes(d)) {
         const auto all_sizes = hn::PromoteTo(d, hn::LoadU(halves, group.counts + row));
         const auto sizes = hn::IfThenElseZero(hn::Lt(all_sizes, hn::Set(d, std::uint32_t(row_slots + 1))), all_sizes);
@@ -95,9 +96,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace octopair {
 
-HWY_EXPORT(write_group_simd);
+HWY_EXPORT(sort_group_simd);
 
-void write_group(const RowGroup& group, Pair* out) { HWY_DYNAMIC_DISPATCH(write_group_simd)(group, out); }
+void sort_group(const RowGroup& group, Pair* out) { HWY_DYNAMIC_DISPATCH(sort_group_simd)(group, out); }
 
 }  // namespace octopair
 

@@ -170,7 +170,7 @@ void BucketSort::sort_in_slots(const std::vector<PageString>& strings, unsigned 
     writer.finish();
 }
 
-/// Sorts the columns of a group of slotted rows and writes the pairs to pages.
+/// Sorts the columns of a group of slotted rows and writes the pairs to pages. `bits`: number of low bits in which columns differ.
 void BucketSort::write_group(std::size_t first_row, unsigned bits, PageWriter& writer) {
     const RowGroup group = slotted_.group(first_row);
     std::uint32_t pairs = 0;
@@ -181,11 +181,13 @@ void BucketSort::write_group(std::size_t first_row, unsigned bits, PageWriter& w
     }
     if (pairs == 0) return;
     if (!any_long && writer.left() >= pairs + row_slots) {
-        octopair::write_group(group, writer.next());
+        count_path(Path::slotted_rows_in_page);
+        sort_group(group, writer.next());
         return writer.wrote(pairs);
     }
     staged_.resize((row_group + 1) * row_slots);
-    octopair::write_group(group, staged_.data());
+    sort_group(group, staged_.data());
+    count_path(any_long ? Path::slots_exceeded : Path::slotted_rows_staged);
     if (!any_long) return writer.copy(std::span(staged_).first(pairs));
     std::span<const Pair> short_rows = staged_;
     for (std::size_t row = first_row; row < std::min(first_row + row_group, slotted_.rows()); ++row) {
@@ -198,7 +200,7 @@ void BucketSort::write_group(std::size_t first_row, unsigned bits, PageWriter& w
     }
 }
 
-/// Sorts the columns of a long slotted row and writes the pairs to pages.
+/// Sorts the columns of a slotted row with more pairs than slots, and writes the pairs to pages.
 void BucketSort::write_long_row(std::size_t row, unsigned bits, PageWriter& writer) {
     const std::span<const std::uint32_t> columns = slotted_.long_row(row);
     if (columns.size() > max_row_at_once || columns.size() > writer.left()) {

@@ -133,7 +133,7 @@ private:
     Pages& pages_;
     std::vector<Pair> sparse_;             // pairs of a bucket with many empty rows
     SlottedRows slotted_;                  // pairs of a bucket with short rows
-    std::vector<Pair> staged_;             // pairs of a group of short rows that do not fit into the page
+    std::vector<Pair> staged_;             // short rows of a group that has a long row, or does not fit into the page
     Buffer<std::uint32_t> columns_;        // objects `b` of a bucket, row by row
     std::vector<std::uint32_t> row_ends_;  // by row of a bucket: position behind its last column; then second counters
     std::vector<std::uint64_t> bitmap_;    // columns of a long row

@@ -342,7 +342,7 @@ private:
         }
         if (tests > tuning().scan.max_tests_per_box * rows) return false;
         memory_.own_set.make_planes();
-        memory_.handed_set.make_planes();
+        if (sweeps.size() > 1) memory_.handed_set.make_planes();
         executor_.for_each_writing(1, [&](std::size_t, ShareWriter& writer) {
             for (const CellSweep& sweep : sweeps) pair_maker_.sweep(sweep, gaps_, writer);
         });

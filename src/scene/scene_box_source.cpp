@@ -57,9 +57,9 @@ bool SceneBoxSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-PlainBoxes SceneBoxSource::plain(std::size_t begin, std::span<Box3f> room) const {
+Float32Boxes SceneBoxSource::float32_boxes(std::size_t begin, std::span<Box3f> room) const {
     if (runs_.size() != 1 || table_.any_traits()) return {};
-    return all_.plain(begin + runs_[0].index, room);
+    return all_.float32_boxes(begin + runs_[0].index, room);
 }
 
 void SceneBoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> out) const {

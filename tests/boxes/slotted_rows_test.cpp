@@ -46,8 +46,8 @@ TEST(SlottedRows, KernelAndSpecificationAgree) {
         std::size_t pairs = 0;
         for (const std::uint16_t count : counts) pairs += count <= row_slots ? count : 0;
         std::vector<Pair> found(pairs + row_slots), expected(pairs + row_slots);
-        write_group(group, found.data());
-        write_group_scalar(group, expected.data());
+        sort_group(group, found.data());
+        sort_group_scalar(group, expected.data());
         found.resize(pairs);
         expected.resize(pairs);
         ASSERT_TRUE(same_sequence(found, expected)) << "round " << round;
@@ -59,7 +59,7 @@ std::vector<Pair> sorted_pairs(const SlottedRows& rows) {
     std::vector<Pair> sorted;
     std::array<Pair, row_slots*(row_group + 1)> some;
     for (std::size_t first = 0; first < rows.rows(); first += row_group) {
-        write_group(rows.group(first), some.data());
+        sort_group(rows.group(first), some.data());
         const Pair* at = some.data();
         for (std::size_t row = first; row < std::min(first + row_group, rows.rows()); ++row) {
             if (!rows.is_long(row)) {

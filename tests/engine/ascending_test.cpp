@@ -76,6 +76,20 @@ TEST_P(Ascending, BucketsTooLargeToSortAtOnce) {
     EXPECT_TRUE(same_sequence(found, pairs));
 }
 
+/// Slotted rows count up to 65,535 pairs in 16 bits. The pairs of a bucket may all have the same `a`.
+TEST_P(Ascending, BucketsAtTheLimitOfSlottedRows) {
+    const std::uint32_t objects = 1 << 23;  // so that a bucket has many rows
+    for (const std::uint32_t count : {0xFFFEu, 0xFFFFu, 0x10000u, 0x10001u}) {
+        for (const std::uint32_t rows : {1u, 5000u}) {
+            std::vector<Pair> pairs;
+            for (std::uint32_t i = count; i-- > 0;) pairs.push_back({i % rows, 10'000 + i});
+            const auto found = sorted_by(GetParam(), pairs, {{0, objects}, objects});
+            std::sort(pairs.begin(), pairs.end());
+            EXPECT_TRUE(same_sequence(found, pairs)) << count << " pairs of " << rows << " rows";
+        }
+    }
+}
+
 TEST_P(Ascending, OnlyTheRowsAskedFor) {
     std::vector<Pair> pairs = random_pairs(100'000, 1'000'000, 1000);
     const auto found = sorted_by(GetParam(), pairs, {{250'000, 600'001}, 1'000'000});

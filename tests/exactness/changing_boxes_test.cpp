@@ -65,7 +65,9 @@ public:
 
     std::size_t size() const override { return boxes_.size(); }
     bool load(std::size_t begin, std::span<Entry> out) const override { return changed().load(begin, out); }
-    PlainBoxes plain(std::size_t begin, std::span<Box3f> room) const override { return changed().plain(begin, room); }
+    Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override {
+        return changed().float32_boxes(begin, room);
+    }
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
         changed().pick(positions, out);
     }

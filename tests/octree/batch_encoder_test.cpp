@@ -105,7 +105,7 @@ TEST_P(Encoding, TakesTheNumbersOfObjects) {
     for (std::uint32_t& object : numbers) object = std::uint32_t(random());
     EncodedBatch found, expected;
     for (const std::size_t count : {std::size_t(1), std::size_t(7), std::size_t(100), max_encoded}) {
-        const PlainBoxes plain{std::span<const Box3f>(boxes).first(count), 0, numbers.data()};
+        const Float32Boxes plain{std::span<const Box3f>(boxes).first(count), 0, numbers.data()};
         ASSERT_TRUE(encoder->encode(plain, found));
         ASSERT_TRUE(encoder->encode_scalar(plain, expected));
         expect_same(found, expected, count);

@@ -34,10 +34,10 @@ bool PositionedSource::load(std::size_t begin, std::span<Entry> out) const {
     return good;
 }
 
-PlainBoxes PositionedSource::plain(std::size_t begin, std::span<Box3f> room) const {
-    PlainBoxes plain = boxes_.plain(begin, room);
-    plain.objects = positions_.of_set[0].data() + begin;
-    return plain;
+Float32Boxes PositionedSource::float32_boxes(std::size_t begin, std::span<Box3f> room) const {
+    Float32Boxes boxes = boxes_.float32_boxes(begin, room);
+    boxes.objects = positions_.of_set[0].data() + begin;
+    return boxes;
 }
 
 /// Returns the set that an object belongs to, and its position within that set.

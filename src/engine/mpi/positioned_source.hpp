@@ -26,7 +26,7 @@ public:
 
     std::size_t size() const override { return boxes_.size(); }
     bool load(std::size_t begin, std::span<Entry> out) const override;
-    PlainBoxes plain(std::size_t begin, std::span<Box3f> room) const override;
+    Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override;
     void pick(std::span<const std::size_t> places, std::span<Entry> out) const override { boxes_.pick(places, out); }
 
     bool join() const override { return boxes_.join(); }

@@ -4,8 +4,8 @@
 //   self          row i against the columns i + 1, i + 2, ... of the same set
 //   cross         a row against the columns of another set that do not begin in a bucket before the row's
 //   cross_strict  a row against the columns of another set that begin in a bucket behind the row's
-// Every window ends with the bucket of the row's high end. For two sets, a row's bucket is the coarser of the sets' buckets.
-// One cross sweep, and one cross_strict sweep with rows and columns exchanged, find each pair of two sets once.
+// Every window ends with the bucket of the row's high end. For two sets, rows and columns are compared by the buckets of the set that has
+// fewer. One cross sweep, and one cross_strict sweep with rows and columns exchanged, find each pair of two sets once.
 //
 // Hits may be too many: within a window, the test uses 8 of 15 bits on two axes, and nothing on the first axis. judge_hits() compares all
 // bits. If ends differ by fewer cells than their order needs to be certain, the hit is doubtful, and PairRule::refused() decides with the

@@ -1,7 +1,8 @@
 // SIMD versions of the functions of cell_sweep.hpp and cell_set.hpp. Highway compiles them for each instruction set.
 //
-// - A row is tested against 64 columns at once, or 32 if its block needs no more, by four saturated subtractions of bytes. All hits are
-//   written, without a branch on whether there are any: dense scenes mispredict that branch.
+// - A row is tested against 64 columns at a time, by four saturated subtractions of bytes for each register of columns. In a self sweep, a
+//   block of rows whose windows end earlier is tested against 32. All hits are written, without a branch on whether there are any: dense
+//   scenes mispredict that branch.
 // - Hits are judged apart from the sweep, many at once: the entries of as many hits as a register has lanes are turned into registers of
 //   one number each.
 #undef HWY_TARGET_INCLUDE
@@ -47,14 +48,10 @@ void write_planes_simd(std::span<const CellEntry> entries, std::uint8_t* planes,
 
 using SignedHalves = hn::Repartition<std::int16_t, Words>;
 
-/// A bit mask of columns.
-template <std::size_t width>
-using ColumnBits = std::conditional_t<(width > 32), std::uint64_t, std::uint32_t>;
-
 /// Returns the first `count` columns, or all if there are fewer, without a branch.
 template <std::size_t width>
-HWY_INLINE ColumnBits<width> first_columns(std::size_t count) {
-    using Bits = ColumnBits<width>;
+HWY_INLINE BitMask<width> first_columns(std::size_t count) {
+    using Bits = BitMask<width>;
     const Bits bits = Bits(std::min(count, width));
     return (Bits(1) << (bits % width)) - 1 - bits / width;
 }
@@ -80,15 +77,15 @@ public:
         }
     }
     /// Returns the columns that overlap a row.
-    HWY_INLINE ColumnBits<width> overlapping(const Planes& rows, std::size_t row) const {
+    HWY_INLINE BitMask<width> overlapping(const Planes& rows, std::size_t row) const {
         const auto low1 = hn::Set(D(), rows.low1[row]), high1 = hn::Set(D(), rows.high1[row]);
         const auto low2 = hn::Set(D(), rows.low2[row]), high2 = hn::Set(D(), rows.high2[row]);
-        ColumnBits<width> hits = 0;
+        BitMask<width> hits = 0;
         for (std::size_t i = 0; i < registers; ++i) {
             const auto apart1 = hn::Or(hn::SaturatedSub(low1_[i], high1), hn::SaturatedSub(low1, high1_[i]));
             const auto apart2 = hn::Or(hn::SaturatedSub(low2_[i], high2), hn::SaturatedSub(low2, high2_[i]));
             const auto hit = hn::Eq(hn::Or(apart1, apart2), hn::Zero(D()));
-            hits |= ColumnBits<width>(bits_of(D(), hit)) << (i * lanes);
+            hits |= BitMask<width>(bits_of(D(), hit)) << (i * lanes);
         }
         return hits;
     }
@@ -104,7 +101,7 @@ private:
 #if HWY_TARGET <= HWY_AVX3_DL
 
 template <std::size_t width>
-HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t, CellHit first, CellHit* out) {
+HWY_INLINE CellHit* write_hits(BitMask<width> set, std::uint32_t, CellHit first, CellHit* out) {
     const hn::CappedTag<std::uint8_t, width> bytes;
     const hn::CappedTag<std::uint32_t, width / 4> d;
     const hn::Half<decltype(bytes)> half;
@@ -134,7 +131,7 @@ HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t, CellHit fir
 #elif HWY_TARGET <= HWY_AVX3
 
 template <std::size_t width>
-HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t, CellHit first, CellHit* out) {
+HWY_INLINE CellHit* write_hits(BitMask<width> set, std::uint32_t, CellHit first, CellHit* out) {
     for (std::size_t k = 0; k < width; k += hn::Lanes(Words())) {
         const auto some = std::uint32_t(set >> k) & 0xFFFFu;
         const auto numbers = hn::Add(lane_numbers(), hn::Set(Words(), first + std::uint32_t(k)));
@@ -147,7 +144,7 @@ HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t, CellHit fir
 #else
 
 template <std::size_t width>
-HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t count, CellHit first, CellHit* out) {
+HWY_INLINE CellHit* write_hits(BitMask<width> set, std::uint32_t count, CellHit first, CellHit* out) {
     const hn::Rebind<std::uint8_t, Words> bytes;
     auto base = hn::Set(Words(), first);
     for (std::uint32_t k = 0; k < count; k += LaneTable::lanes, set >>= LaneTable::lanes) {
@@ -165,6 +162,7 @@ HWY_INLINE CellHit* write_hits(ColumnBits<width> set, std::uint32_t count, CellH
 #endif
 
 static_assert(CellSet::bytes_read_beyond >= column_group);
+static_assert(CellSet::entries_read_beyond >= max_lanes && judged_room >= max_lanes);
 
 /// Adjacent rows and the ends of their windows.
 template <std::size_t count>
@@ -190,7 +188,7 @@ HWY_INLINE CellHit* test_rows(const SweepPlanes& planes, const RowBlock<count>& 
     const auto in_windows = std::uint32_t(std::min<std::size_t>(std::max(block.end, base) - base, width));
     for (std::size_t r = 0; r < count; ++r) {
         auto window = first_columns<width>(std::max(block.ends[r], base) - base);
-        if (begins) window &= ~ColumnBits<width>(0) << r;
+        if (begins) window &= ~BitMask<width>(0) << r;
         const auto hits = columns.overlapping(planes.rows, block.row + r) & window;
         out = write_hits<width>(hits, in_windows, CellHit((block.row + r) << 16 | base), out);
     }

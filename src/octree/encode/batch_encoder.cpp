@@ -14,7 +14,7 @@ BatchEncoder::BatchEncoder(const Space& space, const Directory& directory, std::
     for (const Octant& octant : octants) deep_origins.push_back(OctantCells::deep_origin(locator.map, octant));
 }
 
-bool BatchEncoder::encode_scalar(const PlainBoxes& boxes, EncodedBatch& batch) const {
+bool BatchEncoder::encode_scalar(const Float32Boxes& boxes, EncodedBatch& batch) const {
     BatchEntries entries;
     const bool good = make_entries(boxes, entries);
     encode_scalar(std::span<const Entry>(entries).first(boxes.boxes.size()), batch);

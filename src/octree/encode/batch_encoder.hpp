@@ -46,8 +46,8 @@ public:
     BatchEncoder(const Space& space, const Directory& directory, std::uint32_t no_list);
 
     /// Encodes boxes. Returns false if a box is invalid; the entry of an invalid box is unspecified.
-    bool encode(const PlainBoxes& boxes, EncodedBatch& batch) const;
-    bool encode_scalar(const PlainBoxes& boxes, EncodedBatch& batch) const;
+    bool encode(const Float32Boxes& boxes, EncodedBatch& batch) const;
+    bool encode_scalar(const Float32Boxes& boxes, EncodedBatch& batch) const;
     /// Encodes entries. The entries of the batch have their objects and masks.
     void encode(std::span<const Entry> entries, EncodedBatch& batch) const;
     void encode_scalar(std::span<const Entry> entries, EncodedBatch& batch) const;

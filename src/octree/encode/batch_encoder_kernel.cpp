@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-bool encode_boxes_simd(const BatchEncoder& encoder, const PlainBoxes& boxes, EncodedBatch& batch) {
+bool encode_boxes_simd(const BatchEncoder& encoder, const Float32Boxes& boxes, EncodedBatch& batch) {
     return encoder.encode_scalar(boxes, batch);
 }
 void encode_entries_simd(const BatchEncoder& encoder, std::span<const Entry> entries, EncodedBatch& batch) {
@@ -93,9 +93,9 @@ HWY_INLINE void home_entries(const BatchEncoder& encoder, const Loaded& box, con
     words[3] = box.object;
 }
 
-/// Encodes boxes or entries. `plain`: objects of the boxes.
+/// Encodes boxes or entries. `boxes`: the numbers of the objects, if the items are boxes.
 template <typename Item>
-bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, const PlainBoxes& plain,
+bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, const Float32Boxes& boxes,
                   EncodedBatch& batch) {
     const Words d;
     const Constants constants(encoder.locator);
@@ -103,8 +103,8 @@ bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, cons
     batch.crossers = 0;
     LaneReader<Item> reader(items);
     for (std::size_t i = 0; i < items.size(); i += hn::Lanes(d)) {
-        Loaded box = reader.load(i, plain.first_object);
-        if (plain.objects != nullptr) box.object = reader.numbers(plain.objects, i);
+        Loaded box = reader.load(i, boxes.first_object);
+        if (boxes.objects != nullptr) box.object = reader.numbers(boxes.objects, i);
         const Located at(constants, box);
         const auto list = hn::IfThenElse(at.is_large(), hn::Set(d, encoder.no_list), octant_of(at.leaf));
         hn::StoreU(list, d, batch.lists.data() + i);
@@ -116,7 +116,7 @@ bool encode_lanes(const BatchEncoder& encoder, std::span<const Item> items, cons
     return reader.all_valid();
 }
 
-bool encode_boxes_simd(const BatchEncoder& encoder, const PlainBoxes& boxes, EncodedBatch& batch) {
+bool encode_boxes_simd(const BatchEncoder& encoder, const Float32Boxes& boxes, EncodedBatch& batch) {
     return encode_lanes(encoder, boxes.boxes, boxes, batch);
 }
 void encode_entries_simd(const BatchEncoder& encoder, std::span<const Entry> entries, EncodedBatch& batch) {
@@ -156,7 +156,7 @@ HWY_INLINE void ghosts_of_lanes(const GhostSource& source, CrosserRange crossers
                finest = hn::Min(level, hn::Set(d, OctantCells::max_fine_level));
     alignas(64) std::uint32_t slots[max_lanes], octants[max_lanes];
     const auto first_slot = hn::ShiftLeft<3>(hn::Add(lane_numbers(), hn::Set(d, std::uint32_t(lane))));
-    static_assert(GhostGroup::slots == 1 << 3);
+    static_assert(GhostGroup::slots == 1 << 3 && GhostGroup::most % max_lanes == 0);
     hn::Store(first_slot, d, slots);
     for (unsigned corner = 1; corner < GhostGroup::slots; ++corner) {
         std::uint32_t has = live & ~left_out;
@@ -216,7 +216,7 @@ HWY_EXPORT(encode_boxes_simd);
 HWY_EXPORT(encode_entries_simd);
 HWY_EXPORT(ghosts_simd);
 
-bool BatchEncoder::encode(const PlainBoxes& boxes, EncodedBatch& batch) const {
+bool BatchEncoder::encode(const Float32Boxes& boxes, EncodedBatch& batch) const {
     return HWY_DYNAMIC_DISPATCH(encode_boxes_simd)(*this, boxes, batch);
 }
 

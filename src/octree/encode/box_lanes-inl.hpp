@@ -276,6 +276,7 @@ HWY_INLINE void append_crossers(const Located& at, std::size_t i, std::uint32_t 
         store(at.low[axis], batch.low[axis].data());
         store(at.high[axis], batch.high[axis].data());
     }
+    static_assert(CrosserBatch::room >= max_encoded + max_lanes);
     batch.crossers = crossers + hwy::PopCount(crossing);
 }
 

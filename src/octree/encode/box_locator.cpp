@@ -9,12 +9,12 @@
 
 namespace octopair {
 
-bool make_entries(const PlainBoxes& plain, BatchEntries& entries) {
+bool make_entries(const Float32Boxes& boxes, BatchEntries& entries) {
     bool good = true;
-    for (std::size_t i = 0; i < plain.boxes.size(); ++i) {
-        good &= is_box(plain.boxes[i]);
-        std::memcpy(&entries[i], &plain.boxes[i], sizeof(Box3f));
-        entries[i].object = plain.object(i);
+    for (std::size_t i = 0; i < boxes.boxes.size(); ++i) {
+        good &= is_box(boxes.boxes[i]);
+        std::memcpy(&entries[i], &boxes.boxes[i], sizeof(Box3f));
+        entries[i].object = boxes.object(i);
         entries[i].mask = 0;
     }
     return good;

@@ -45,7 +45,7 @@ struct LocatedBatch : CrosserBatch {
 
 using BatchEntries = std::array<Entry, max_encoded>;
 /// Converts boxes to entries with mask 0. Returns false if a box is invalid.
-bool make_entries(const PlainBoxes& plain, BatchEntries& entries);
+bool make_entries(const Float32Boxes& boxes, BatchEntries& entries);
 
 class OCTOPAIR_PRIVATE_EXPORT BoxLocator {
 public:

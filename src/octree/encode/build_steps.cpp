@@ -53,8 +53,8 @@ public:
 
 private:
     bool encode(std::size_t begin, std::size_t count) {
-        plain_ = steps_.source.plain(begin, std::span(rounded_).first(count));
-        if (!plain_.boxes.empty()) return plain_.valid && encoder_.encode(plain_, batch_);
+        boxes_ = steps_.source.float32_boxes(begin, std::span(rounded_).first(count));
+        if (!boxes_.boxes.empty()) return boxes_.valid && encoder_.encode(boxes_, batch_);
         const std::span<Entry> entries = std::span(loaded_).first(count);
         if (!steps_.source.load(begin, entries)) return false;
         encoder_.encode(entries, batch_);
@@ -63,10 +63,10 @@ private:
 
     /// Returns a box of the batch as an entry. Its mask has no class bits of this octree yet.
     Entry whole_entry(std::uint32_t position) const {
-        if (plain_.boxes.empty()) return loaded_[position];
+        if (boxes_.boxes.empty()) return loaded_[position];
         Entry entry{};
-        std::memcpy(&entry, &plain_.boxes[position], sizeof(Box3f));
-        entry.object = plain_.object(position);
+        std::memcpy(&entry, &boxes_.boxes[position], sizeof(Box3f));
+        entry.object = boxes_.object(position);
         return entry;
     }
 
@@ -132,9 +132,9 @@ private:
     BatchEncoder encoder_;
     Writer writer_;
     EncodedBatch batch_;
-    PlainBoxes plain_;  // boxes of the batch, or none
-    std::array<Box3f, max_encoded> rounded_;
-    std::array<Entry, max_encoded> loaded_;  // entries of the batch, unless plain_ has its boxes
+    Float32Boxes boxes_;                      // boxes of the batch, or none
+    std::array<Box3f, max_encoded> rounded_;  // memory for the boxes of boxes_, if the source rounds them
+    std::array<Entry, max_encoded> loaded_;   // entries of the batch, unless boxes_ has its boxes
 };
 
 }  // namespace

@@ -70,8 +70,8 @@ std::vector<std::uint32_t> Routing::find_homes(Executor& executor) {
 /// Finds the leaves of objects [begin, begin + count). Returns false if one of them is no valid box.
 bool Routing::locate(std::size_t begin, std::size_t count, LocatedBatch& batch) const {
     std::array<Box3f, max_batch> room;
-    const PlainBoxes plain = source_.plain(begin, std::span(room).first(count));
-    if (!plain.boxes.empty()) return plain.valid && locator_.locate(plain.boxes, batch);
+    const Float32Boxes some = source_.float32_boxes(begin, std::span(room).first(count));
+    if (!some.boxes.empty()) return some.valid && locator_.locate(some.boxes, batch);
     std::array<Entry, max_batch> entries;
     const std::span<Entry> loaded = std::span(entries).first(count);
     if (!source_.load(begin, loaded)) return false;

@@ -42,9 +42,9 @@ public:
         tick();
         return source_.load(begin, out);
     }
-    PlainBoxes plain(std::size_t begin, std::span<Box3f> room) const override {
+    Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override {
         tick();
-        return source_.plain(begin, room);
+        return source_.float32_boxes(begin, room);
     }
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
         source_.pick(positions, out);
