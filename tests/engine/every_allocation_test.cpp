@@ -2,6 +2,7 @@
 // list empty, and the next call of the engine is right.
 #include <gtest/gtest.h>
 
+#include "base/test_hooks.hpp"
 #include "octopair/octopair.hpp"
 #include "samples/scenes.hpp"
 #include "support/at_allocation.hpp"
@@ -46,10 +47,17 @@ TEST_P(EveryAllocation, OfASearchMayFail) {
     EXPECT_GT(failures, 20u);
 }
 
-/// An octant that gets entries from above needs memory for a second set, which the next search of an octant finds as it was left.
+/// An octant that gets entries from above needs memory for a second set. If that fails, the next search must not read what the set held.
 TEST_P(EveryAllocation, OfASearchWithHandedDownEntriesMayFail) {
     const std::vector<Box3f> boxes = samples::make_scene("world10", 5000, 1);
+#ifdef OCTOPAIR_TEST_HOOKS
+    const auto& handed_down = test_hooks().paths[std::size_t(Path::handed_down)];
+    const std::uint64_t before = handed_down;
+#endif
     const std::vector<Pair> pairs = find_pairs(boxes);
+#ifdef OCTOPAIR_TEST_HOOKS
+    EXPECT_GT(handed_down, before);
+#endif
     const auto find = [&](Made& made) {
         made.list = {};
         made.engine->find_pairs(Objects{boxes}, made.list, {});
