@@ -110,11 +110,9 @@ def peers(results, name):
 
 
 def milliseconds(seconds):
-    """Formats milliseconds with about three significant digits."""
+    """Formats milliseconds with at least two significant digits, down to a tenth of a microsecond."""
     value = seconds * 1e3
-    if value < 0.1:
-        return f"{value:#.3g}"
-    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
+    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}" if value >= 0.1 else f"{value:.4f}"
 
 
 TIMES = ("median_seconds", "percentile99_seconds", "slowest_seconds", "median_processor_seconds")
@@ -150,14 +148,21 @@ def frames(results):
 
 def frame_queries(results):
     """Returns a row for each case with queries, with the microseconds of a query of each tracker."""
-    cases = [case for case in load(results / "frames.json")["results"] if "median_query_seconds" in case["rows"][-1]]
-    trackers = [row["tracker"] for row in cases[0]["rows"] if "median_query_seconds" in row]
+    cases = load(results / "frames.json")["results"]
+    trackers = list(dict.fromkeys(row["tracker"] for case in cases for row in case["rows"] if "median_query_seconds" in row))
     lines = ["| microseconds a query: median (99%) | " + " | ".join(trackers) + " |", "|---|" + "--:|" * len(trackers)]
     for case in cases:
-        rows = {row["tracker"]: row for row in case["rows"]}
-        times = [(1e6 * rows[name]["median_query_seconds"], 1e6 * rows[name]["percentile99_query_seconds"]) for name in trackers]
-        lines.append("| " + " | ".join([case_title(case), *(f"{half:.2f} ({most:.2f})" for half, most in times)]) + " |")
+        rows = {row["tracker"]: row for row in case["rows"] if "median_query_seconds" in row}
+        if rows:
+            lines.append("| " + " | ".join([case_title(case), *(query_cell(rows[name]) if name in rows else "" for name in trackers)]) + " |")
     return "\n".join(lines)
+
+
+def query_cell(row):
+    """Returns the cell of a tracker's queries: their time, and in how many frames their answers differ."""
+    times = f"{1e6 * row['median_query_seconds']:.2f} ({1e6 * row['percentile99_query_seconds']:.2f})"
+    differing = row["differing_query_frames"]
+    return times + (f", other numbers in {differing} frames" if differing else "")
 
 
 def goal_text(goal):
@@ -401,7 +406,8 @@ def model(name):
 
 
 BLOCKS = {"machine": machine, "short": short, "paper": paper, "machines": machines, "scenes": scenes, "frames": frames,
-          "frame_queries": frame_queries, "frame_goals": frame_goals, "frame_memory": frame_memory, "engines": engines, "engine_aims": engine_aims,
+          "frame_queries": frame_queries, "frame_goals": frame_goals, "frame_memory": frame_memory,
+          "engines": engines, "engine_aims": engine_aims,
           "engine_memory": engine_memory, "engine_choice": engine_choice, "service": service,
           "service_crowds": service_crowds, "service_aims": service_aims,
           "exact_objects": exact_objects, "self_intersections": self_intersections, "scaling": scaling,

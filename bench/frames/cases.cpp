@@ -16,7 +16,7 @@ const std::string fcl_array = "FCL AABB tree, array";
 const std::string ode = "ODE hash space";
 const std::string ode_sweep = "ODE sweep and prune";
 
-/// Loops of games and robots: few bodies, of which all or a tenth move.
+/// Cases of few objects, as in games and robot control. All or a tenth of them move.
 std::vector<FrameCase> small_cases() {
     std::vector<FrameCase> cases;
     for (const std::uint64_t objects : {20, 200, 1'000, 5'000}) {
@@ -29,6 +29,7 @@ std::vector<FrameCase> small_cases() {
             one.trackers = {full, all_pairs, bullet, fcl};
             if (all_move && objects >= 200) one.goals = {{all_pairs, Statistic::median, {full}, 1.0}};
             one.queries = 16;
+            one.frames_factor = 10;
         }
     }
     return cases;

@@ -25,8 +25,8 @@ struct FrameCase {
     std::vector<std::string> trackers;  ///< the first is the reference
     std::vector<Goal> goals;
     unsigned queries = 0;  ///< number of overlap queries after each frame
-
-    bool is_small() const { return objects < 10'000; }
+    unsigned frames_factor =
+        1;  ///< number of frames for each frame of the plan; frames of few objects take little time
 };
 
 std::vector<FrameCase> frame_cases();

@@ -76,7 +76,7 @@ void run_frame(std::vector<Runner>& runners, const Frame& frame) {
     }
 }
 
-/// Finds with each tracker the objects that overlap some boxes, other ones in each frame. Compares the numbers found.
+/// Finds with each tracker the objects that overlap some boxes, other boxes in each frame. Compares their numbers.
 void run_queries(std::vector<Runner>& runners, const FrameCase& which, std::span<const Box3f> boxes, unsigned frame) {
     std::vector<Box3f> asked(which.queries);
     for (std::size_t i = 0; i < asked.size(); ++i) asked[i] = boxes[(frame + 37 * i) % boxes.size()];
@@ -118,7 +118,7 @@ const Track& named(const std::vector<Track>& tracks, const std::string& name) {
 
 }  // namespace
 
-unsigned frames_of(const FrameCase& which, const FramePlan& plan) { return plan.frames * (which.is_small() ? 10 : 1); }
+unsigned frames_of(const FrameCase& which, const FramePlan& plan) { return plan.frames * which.frames_factor; }
 
 double Track::quantile(double share, Clock clock) const {
     const std::vector<double>& of = clock == Clock::wall ? seconds : processor_seconds;

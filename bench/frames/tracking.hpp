@@ -17,7 +17,7 @@ struct FramePlan {
     double max_seconds = 30;  ///< time limit of a tracker, after `min_frames` at least
 };
 
-/// Returns the number of frames of a case after the first: ten times the plan's if there are few objects, because these take little time.
+/// Returns the number of frames of a case after the first.
 unsigned frames_of(const FrameCase& which, const FramePlan& plan);
 
 /// `processor`: processor time of all threads of this process. This time is more reliable for long frames when other
@@ -29,11 +29,12 @@ struct Track {
     double first_seconds = 0;
     std::vector<double> seconds;            ///< of each frame after the first, wall clock
     std::vector<double> processor_seconds;  ///< of each frame after the first, processor time
-    std::vector<double> query_seconds;      ///< of a query, by frame; empty without queries
+    std::vector<double> query_seconds;      ///< by frame: mean of its queries; empty without queries
     std::uint64_t pairs = 0;                ///< of the last frame
     std::uint64_t differing = 0;            ///< frames with other pairs than the first tracker's
     std::uint64_t differs_pairs = 0;        ///< pairs found in the first differing frame
-    std::uint64_t differing_queries = 0;    ///< frames with other answers than the first tracker's that has queries
+    std::uint64_t differing_queries =
+        0;  ///< frames in which other numbers of objects overlap than for the first tracker that has queries
 
     /// Returns the time that `share` of the frames do not exceed: 0.5 for the median, 1 for the slowest.
     double quantile(double share, Clock clock = Clock::wall) const;

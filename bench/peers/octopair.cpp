@@ -43,25 +43,28 @@ private:
     std::uint64_t pairs_ = 0;
 };
 
+/// Converts boxes to float64.
+void widen(std::span<const Box3f> boxes, std::vector<Box3d>& wide) {
+    wide.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        std::copy_n(boxes[i].min, 3, wide[i].min);
+        std::copy_n(boxes[i].max, 3, wide[i].max);
+    }
+}
+
 /// Uses equal boxes in float64, converted on the first run.
 class OursWide : public Ours {
 public:
     explicit OursWide(unsigned threads) : Ours(threads, Order::octal) {}
     void run(std::span<const Box3f> boxes) override {
-        if (narrow_.data() != boxes.data() || narrow_.size() != boxes.size()) widen(boxes);
+        if (narrow_.data() != boxes.data() || narrow_.size() != boxes.size()) {
+            narrow_ = boxes;
+            widen(boxes, wide_);
+        }
         find(Objects{std::span<const Box3d>(wide_)});
     }
 
 private:
-    void widen(std::span<const Box3f> boxes) {
-        narrow_ = boxes;
-        wide_.resize(boxes.size());
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            std::copy_n(boxes[i].min, 3, wide_[i].min);
-            std::copy_n(boxes[i].max, 3, wide_[i].max);
-        }
-    }
-
     std::span<const Box3f> narrow_;
     std::vector<Box3d> wide_;
 };
@@ -84,12 +87,7 @@ public:
     }
     Found found() const override { return {pairs_, 0}; }
     std::optional<std::uint64_t> overlaps(std::span<const Box3f> boxes) override {
-        wide_.clear();
-        for (const Box3f& box : boxes) {
-            Box3d& wide = wide_.emplace_back();
-            std::copy_n(box.min, 3, wide.min);
-            std::copy_n(box.max, 3, wide.max);
-        }
+        widen(boxes, wide_);
         scene_.overlaps(wide_, answers_);
         return answers_.all.size();
     }
