@@ -26,9 +26,9 @@ def machine(results):
               *results.glob("service.json")]
     files = [load(path) for path in [results / "paper.json", *others]]
     said = files[0]
-    commits = sorted({file["commit"] for file in files})
-    return (f"Measured on {said['processor']}, {said['cores']} cores, with {said['compiler']}; octopair "
-            f"{said['version']}, commit{'s' if len(commits) > 1 else ''} {', '.join(commits)}.")
+    processors, versions, commits = (sorted({file[key] for file in files}) for key in ("processor", "version", "commit"))
+    return (f"Measured on {' and '.join(processors)}, {said['cores']} cores, with {said['compiler']}; octopair "
+            f"{' and '.join(versions)}, commit{'s' if len(commits) > 1 else ''} {', '.join(commits)}.")
 
 
 def seconds_at(study, finder, processors, objects):
