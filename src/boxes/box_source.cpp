@@ -31,6 +31,11 @@ Box3d wide_box(const Objects& set, std::size_t index) {
     return std::visit([&](auto boxes) { return wide(boxes[index]); }, set.boxes);
 }
 
+/// Returns the padding of the objects [begin, begin + count), or none if no object has padding.
+std::span<const double> part_of(std::span<const double> padding, std::size_t begin, std::size_t count) {
+    return padding.empty() ? padding : padding.subspan(begin, count);
+}
+
 }  // namespace
 
 bool is_plain(const Objects& set) { return holds_float32(set) && set.padding.empty(); }
@@ -196,7 +201,7 @@ bool BoxSource::load_set(std::span<const Box<Real>> boxes, std::span<const doubl
     if constexpr (std::is_same_v<Real, float>) {
         if (form_.exact) return copy_boxes(some, out);
     }
-    return round_boxes(some, padding.empty() ? padding : padding.subspan(begin, out.size()), form_.rounding, out);
+    return round_boxes(some, part_of(padding, begin, out.size()), form_.rounding, out);
 }
 
 bool BoxSource::load(std::size_t begin, std::span<Entry> out) const {
@@ -224,8 +229,8 @@ Float32Boxes BoxSource::float32_boxes(std::size_t begin, std::span<Box3f> room) 
     if (form_.exact) {
         return {std::get<std::span<const Box3f>>(first_->boxes).subspan(begin, room.size()), first_object};
     }
-    const auto padding = first_->padding.empty() ? first_->padding : first_->padding.subspan(begin, room.size());
     const auto round = [&](auto boxes) {
+        const auto padding = part_of(first_->padding, begin, room.size());
         return round_boxes(boxes.subspan(begin, room.size()), padding, form_.rounding, room);
     };
     return {room, first_object, nullptr, std::visit(round, first_->boxes)};

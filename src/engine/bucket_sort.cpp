@@ -42,6 +42,18 @@ const Pair& first_pair(const std::vector<PageString>& strings) {
     return std::ranges::find_if(strings, [](const PageString& string) { return string.size() > 0; })->page(0).front();
 }
 
+struct BucketRows {
+    std::size_t count;
+    std::uint64_t first;
+};
+
+/// Returns the rows of all keys that differ from those of the pairs only in their lowest `bits`.
+/// Requires: the strings are not all empty.
+BucketRows rows_of(const std::vector<PageString>& strings, unsigned bits, const PairKeys& keys) {
+    const std::size_t count = std::size_t(1) << (bits - std::min(bits, keys.column_bits()));
+    return {count, keys.first_row() + (keys.row(first_pair(strings)) & ~(count - 1))};
+}
+
 }  // namespace
 
 /// Writes pairs to pages, and appends a run for each page.
@@ -154,8 +166,7 @@ void BucketSort::sort_sparse(const std::vector<PageString>& strings, CallState& 
 void BucketSort::sort_in_slots(const std::vector<PageString>& strings, unsigned bits, CallState& state) {
     count_path(Path::bucket_in_slots);
     const PairKeys& keys = plan_.keys();
-    const std::size_t rows = std::size_t(1) << (bits - std::min(bits, keys.column_bits()));
-    const std::uint64_t first_row = keys.first_row() + (keys.row(first_pair(strings)) & ~(rows - 1));
+    const auto [rows, first_row] = rows_of(strings, bits, keys);
     slotted_.reset(rows, size_of(strings), std::uint32_t(first_row));
     for (const PageString& string : strings) {
         for (std::size_t i = string.pages().size(); i-- > 0;) {  // the page returned last is taken first
@@ -214,11 +225,9 @@ void BucketSort::write_long_row(std::size_t row, unsigned bits, PageWriter& writ
 void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, CallState& state) {
     count_path(Path::bucket_sorted);
     const PairKeys& keys = plan_.keys();
-    const unsigned column_bits = keys.column_bits();
-    const std::uint32_t rows = bits > column_bits ? std::uint32_t(1) << (bits - column_bits) : 1;
-    const std::uint64_t first_row = keys.first_row() + (keys.row(first_pair(strings)) & ~(rows - 1));
-    const auto row_of = [&](const Pair& pair) { return keys.row(pair) & (rows - 1); };
-    row_ends_.assign(2 * std::size_t(rows), 0);
+    const auto [rows, first_row] = rows_of(strings, bits, keys);
+    const auto row_of = [&, row_bits = std::uint32_t(rows - 1)](const Pair& pair) { return keys.row(pair) & row_bits; };
+    row_ends_.assign(2 * rows, 0);
     const std::span<std::uint32_t> ends = std::span(row_ends_).first(rows),
                                    odd_counts = std::span(row_ends_).subspan(rows);
     for (const PageString& string : strings) {
@@ -257,7 +266,7 @@ void BucketSort::sort_rows_at_once(const std::vector<PageString>& strings, unsig
             state.spend(string.pages()[i]);
         }
     }
-    write_rows({ends, first_row}, std::min(bits, column_bits), state);
+    write_rows({ends, first_row}, std::min(bits, keys.column_bits()), state);
 }
 
 /// Sorts the columns of each row and writes the pairs to pages.
