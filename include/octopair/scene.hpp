@@ -14,7 +14,7 @@
 //           A scene that was moved from may only be destroyed or assigned to.
 // Threads   One thread at a time, also for queries.
 // Cost      A step's time depends on what moved; if most objects moved, it is that of a full detection. The first step in which
-//           few objects moved builds an octree, which takes two to four full detections, and longer where the memory is new. A query
+//           few objects moved builds an octree, which takes about five full detections, and longer where the memory is new. A query
 //           right after a step builds the octree, too. docs/memory.md bounds the bytes per object and per pair. docs/results.md has measurements.
 #pragma once
 
