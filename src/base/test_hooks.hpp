@@ -19,13 +19,13 @@ namespace octopair {
 /// All paths through the algorithm, grouped by the source file that chooses the path. A test of tiny scenes takes each path.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
-    /* octree/encode/split_rule.cpp, octree/directory.cpp */ \
+    /* octree/plan/split_rule.cpp, octree/plan/directory.cpp */ \
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
-    /* octree/linear_octree.cpp, octree/encode/build_steps.cpp */ \
+    /* octree/build/linear_octree.cpp, octree/build/build_steps.cpp */ \
     path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) \
     path(ghost_entries) path(ghosts_by_rule) path(refilled) path(class_bits_brought) \
-    /* octree/scan.cpp */ \
+    /* octree/scan/scan.cpp */ \
     path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
     path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide) \
     path(join_swept) path(join_crowded) path(swept_on_other_axis) path(crowd_whole) path(crowd_swept) \
@@ -37,7 +37,7 @@ namespace octopair {
     path(recursion_spanning) path(recursion_halved) path(recursion_shared) \
     /* octree/sweep/start_order.cpp, octree/sweep/sweep_choice.cpp */ \
     path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks) path(hits_few) \
-    /* octree/cell_sweep/cell_pair_maker.cpp */ \
+    /* octree/sweep/cell_pair_maker.cpp */ \
     path(cell_sweep_resumed) path(cell_hit_doubtful) path(cell_hit_refused) \
     /* octree/sweep/sweep_kernel.cpp, octree/sweep/pair_maker.cpp */ \
     path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed) path(pairs_counted) \

@@ -9,7 +9,7 @@
 #include "base/private_export.hpp"
 #include "boxes/box_check.hpp"
 #include "boxes/entry.hpp"
-#include "boxes/pair_rule.hpp"
+#include "boxes/entry_source.hpp"
 #include "geometry/rounding.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/pose.hpp"
@@ -92,7 +92,7 @@ struct BoxesOfPairs {
     const Box<Real>& b(const Pair& pair) const { return second[pair.b - second_begin]; }
 };
 
-/// Implements PairRule::refused() for boxes that are a pair if they overlap.
+/// Implements EntrySource::refused() for boxes that are a pair if they overlap.
 std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<float>& boxes, std::uint32_t* out);
 std::size_t refused_pairs(const DoubtfulPairs& doubtful, const BoxesOfPairs<double>& boxes, std::uint32_t* out);
 

@@ -19,39 +19,10 @@
 #include "base/private_export.hpp"
 #include "boxes/box_kernel.hpp"
 #include "boxes/entry.hpp"
-#include "boxes/pair_rule.hpp"
+#include "boxes/entry_source.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
-
-/// Float32 boxes of some objects: those of the caller, or boxes that were rounded.
-struct Float32Boxes {
-    std::span<const Box3f> boxes;
-    std::uint32_t first_object = 0;          ///< number of the first object; the other numbers follow it
-    const std::uint32_t* objects = nullptr;  ///< if not null: the number of each object, in place of `first_object`
-    bool valid = true;                       ///< false if a box is rounded from one that is not valid
-
-    std::uint32_t object(std::size_t i) const {
-        return objects != nullptr ? objects[i] : first_object + std::uint32_t(i);
-    }
-};
-
-/// Source of the entries of an octree: the caller's boxes, or the entries of a crowded octant (octree/scan.cpp).
-class OCTOPAIR_PRIVATE_EXPORT EntrySource {
-public:
-    virtual ~EntrySource() = default;
-    virtual std::size_t size() const = 0;
-    /// Writes the entries [begin, begin + out.size()). Returns false if one of the objects is not a valid box.
-    virtual bool load(std::size_t begin, std::span<Entry> out) const = 0;
-    /// Returns the boxes [begin, begin + room.size()): those of the caller, without a check of their values, or rounded boxes, stored in
-    /// `room`. Returns no boxes unless the entries have these bounds, and no bit in their masks.
-    virtual Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const {
-        (void)begin, (void)room;
-        return {};
-    }
-    /// Writes the bounds of the entries at `positions`, without a check of their values.
-    virtual void pick(std::span<const std::size_t> positions, std::span<Entry> out) const = 0;
-};
 
 /// Conversion of boxes to entries. It depends on all objects of a call, even if each process has only some of them.
 struct EntryForm {
@@ -85,7 +56,7 @@ struct SetBegins {
 /// Throws: Error{bad_input} for an object that was a valid box when it was read before.
 [[noreturn]] OCTOPAIR_PRIVATE_EXPORT void throw_object_changed();
 
-class OCTOPAIR_PRIVATE_EXPORT BoxSource final : public EntrySource, public PairRule {
+class OCTOPAIR_PRIVATE_EXPORT BoxSource final : public EntrySource {
 public:
     /// Borrows both sets. If `second` is null, pairs are those within `first`.
     BoxSource(const Objects& first, const Objects* second, double margin);

@@ -19,8 +19,8 @@
 
 #include "boxes/entry.hpp"
 #include "octopair/error.hpp"
-#include "octree/directory.hpp"
-#include "octree/space.hpp"
+#include "octree/plan/directory.hpp"
+#include "octree/plan/space.hpp"
 
 namespace octopair {
 

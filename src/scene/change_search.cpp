@@ -6,7 +6,7 @@
 
 #include "base/stop.hpp"
 #include "base/tuning.hpp"
-#include "boxes/pair_rule.hpp"
+#include "boxes/entry_source.hpp"
 #include "scene/scene_box_source.hpp"
 
 namespace octopair {

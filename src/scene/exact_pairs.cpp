@@ -5,7 +5,7 @@
 
 #include "base/tuning.hpp"
 #include "boxes/box_kernel.hpp"
-#include "boxes/pair_rule.hpp"
+#include "boxes/entry_source.hpp"
 #include "engine/pair_list.hpp"
 
 namespace octopair {

@@ -17,7 +17,7 @@ inline bool compatible(const Traits& a, const Traits& b) {
     return (a.mask & b.groups) != 0 && (b.mask & a.groups) != 0 && !(a.fixed && b.fixed);
 }
 
-class SceneBoxSource final : public EntrySource, public PairRule {
+class SceneBoxSource final : public EntrySource {
 public:
     /// Borrows `table`. Requires: the table does not change while this source exists.
     SceneBoxSource(const ObjectTable& table, double margin);

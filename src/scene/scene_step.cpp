@@ -14,7 +14,7 @@
 #include "base/tuning.hpp"
 #include "engine/threads/ascending.hpp"
 #include "octopair/error.hpp"
-#include "octree/scan.hpp"
+#include "octree/scan/scan.hpp"
 #include "scene/scene_state.hpp"
 
 namespace octopair {

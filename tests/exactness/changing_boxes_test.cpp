@@ -9,9 +9,9 @@
 #include "exactness/small_scenes.hpp"
 #include "exactness/tiny_tuning.hpp"
 #include "octopair/error.hpp"
-#include "octree/linear_octree.hpp"
-#include "octree/scan.hpp"
-#include "octree/scan_memory.hpp"
+#include "octree/build/linear_octree.hpp"
+#include "octree/scan/scan.hpp"
+#include "octree/scan/scan_memory.hpp"
 #include "samples/random.hpp"
 #include "support/families.hpp"
 #include "support/hostile_boxes.hpp"
@@ -58,12 +58,11 @@ private:
     std::vector<std::variant<BoxOverwriter<float>, BoxOverwriter<double>>> overwriters_;
 };
 
-/// A source and pair rule whose boxes change before each read.
-class ChangingSource final : public EntrySource, public PairRule {
+/// A source whose boxes change before each read.
+class ChangingSource final : public ForwardingSource {
 public:
-    ChangingSource(ChangingObjects& objects, const BoxSource& boxes) : objects_(objects), boxes_(boxes) {}
+    ChangingSource(ChangingObjects& objects, const BoxSource& boxes) : ForwardingSource(boxes), objects_(objects) {}
 
-    std::size_t size() const override { return boxes_.size(); }
     bool load(std::size_t begin, std::span<Entry> out) const override { return changed().load(begin, out); }
     Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override {
         return changed().float32_boxes(begin, room);
@@ -71,11 +70,6 @@ public:
     void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
         changed().pick(positions, out);
     }
-
-    bool join() const override { return boxes_.join(); }
-    std::uint32_t second_begin() const override { return boxes_.second_begin(); }
-    bool exact() const override { return boxes_.exact(); }
-    RoundingSlack slack() const override { return boxes_.slack(); }
     bool is_pair(std::uint32_t a, std::uint32_t b) const override { return changed().is_pair(a, b); }
     std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override {
         return changed().refused(doubtful, out);
@@ -83,13 +77,12 @@ public:
     void load_bounds(std::span<Entry> entries) const override { changed().load_bounds(entries); }
 
 private:
-    const BoxSource& changed() const {
+    const EntrySource& changed() const {
         objects_.change();
-        return boxes_;
+        return source();
     }
 
     ChangingObjects& objects_;
-    const BoxSource& boxes_;
 };
 
 class Collector final : public ShareWriter {

@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "octree/encode/batch_encoder.hpp"
-#include "octree/encode/octants_of.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/batch_encoder.hpp"
+#include "octree/build/octants_of.hpp"
+#include "octree/build/linear_octree.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {

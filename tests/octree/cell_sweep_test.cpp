@@ -1,6 +1,6 @@
 // Tests the sweep on cells: its SIMD kernels against their scalar specifications, these against a test of all entries, and
 // certain hits against the caller's own numbers.
-#include "octree/cell_sweep/cell_sweep.hpp"
+#include "octree/sweep/cell_sweep.hpp"
 
 #include <gtest/gtest.h>
 

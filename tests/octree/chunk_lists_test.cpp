@@ -1,6 +1,6 @@
 // Tests that a StagedWriter appends the same entries to the same lists as a ChunkWriter, however it stages them. Tests that
 // readers of damaged lists end.
-#include "octree/encode/chunk_lists.hpp"
+#include "octree/build/chunk_lists.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "octopair/error.hpp"
-#include "octree/encode/staged_writer.hpp"
+#include "octree/build/staged_writer.hpp"
 
 namespace octopair::test {
 namespace {

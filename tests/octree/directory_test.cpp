@@ -1,5 +1,5 @@
 // Tests Directory: octants computed from split flags, and the leaf of each cell.
-#include "octree/directory.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/reporting_octant.hpp"
 
 #include <gtest/gtest.h>

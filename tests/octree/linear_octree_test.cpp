@@ -3,7 +3,7 @@
 // - Each box has an entry in every required octant, at most eight in total.
 // - The octree is the same for any distribution of the work.
 
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 #include "octree/reporting_octant.hpp"
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 #include "parallel/team.hpp"
 #include "support/kinds.hpp"
 

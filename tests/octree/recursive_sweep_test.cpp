@@ -10,8 +10,8 @@
 
 #include "baselines/baselines.hpp"
 #include "octopair/error.hpp"
-#include "octree/given_rule.hpp"
-#include "octree/scan_memory.hpp"
+#include "octree/given_source.hpp"
+#include "octree/scan/scan_memory.hpp"
 #include "octree/sweep/start_order.hpp"
 #include "support/errors.hpp"
 
@@ -87,22 +87,22 @@ protected:
     void expect_all_pairs(std::size_t count, Method method) const {
         const std::vector<Entry> entries = make_entries(GetParam(), count, unsigned(count));
         const std::vector<EntryId> ids = ids_of(entries);
-        const GivenRule one_set(entries, 0);
+        const GivenSource one_set(entries, 0);
         const EntryList all(one_set, ids);
         const EntryList whole{std::span<const Entry>(entries)};
         const Pairs expected = brute_force(entries);
         expect_pairs(one_set, {all, all, true}, expected, method);
         expect_pairs(one_set, {whole, whole, true}, expected, method);
         const std::size_t half = count / 3;
-        const GivenRule two_sets(entries, std::uint32_t(half));
+        const GivenSource two_sets(entries, std::uint32_t(half));
         const EntryList rows(two_sets, std::span(ids).first(half)), columns(two_sets, std::span(ids).subspan(half));
         expect_pairs(two_sets, {rows, columns, false}, across(expected, half), method);
     }
 
 private:
-    static void expect_pairs(const PairRule& rule, const SweepInput& input, const Pairs& expected, Method method) {
+    static void expect_pairs(const EntrySource& source, const SweepInput& input, const Pairs& expected, Method method) {
         ScanMemoryPool memory;
-        const ScanContext context{rule, {}, memory};
+        const ScanContext context{source, {}, memory};
         CollectingWriter writer;
         SerialExecutor executor(writer);
         method(context, input, executor);
@@ -135,16 +135,11 @@ TEST_P(SweepsOf, RecursiveSweepFindsAllPairs) {
 
 /// Boxes that move up whenever they are read again. A recursive sweep reads columns to choose a value, and again to split them at this
 /// value. At the second time all columns are above the value, so no split divides them.
-class RisingRule final : public PairRule {
+class RisingSource final : public GivenSource {
 public:
     static constexpr std::uint32_t rows = 600, columns = 600;
 
-    bool join() const override { return true; }
-    std::uint32_t second_begin() const override { return rows; }
-    bool exact() const override { return true; }
-    RoundingSlack slack() const override { return {}; }
-    bool is_pair(std::uint32_t, std::uint32_t) const override { return true; }
-    std::size_t refused(const DoubtfulPairs&, std::uint32_t*) const override { return 0; }
+    RisingSource() : GivenSource({}, rows) {}
     void load_bounds(std::span<Entry> entries) const override {
         if (!entries.empty() && entries[0].object % rows == 0) height_ += 10;
         for (Entry& entry : entries) {
@@ -163,15 +158,15 @@ private:
 };
 
 TEST(RecursiveSweep, EndsIfBoxesChange) {
-    const RisingRule rule;
+    const RisingSource source;
     std::vector<EntryId> row_ids, column_ids;
-    for (std::uint32_t i = 0; i < rule.rows; ++i) row_ids.push_back({i, 0});
-    for (std::uint32_t i = 0; i < rule.columns; ++i) column_ids.push_back({rule.rows + i, 0});
+    for (std::uint32_t i = 0; i < source.rows; ++i) row_ids.push_back({i, 0});
+    for (std::uint32_t i = 0; i < source.columns; ++i) column_ids.push_back({source.rows + i, 0});
     ScanMemoryPool memory;
-    const ScanContext context{rule, {}, memory};
+    const ScanContext context{source, {}, memory};
     CollectingWriter writer;
     SerialExecutor executor(writer);
-    const SweepInput join{EntryList(rule, row_ids), EntryList(rule, column_ids), false, {}};
+    const SweepInput join{EntryList(source, row_ids), EntryList(source, column_ids), false, {}};
     EXPECT_EQ(error_of(ErrorCode::bad_input, [&] { recursive_sweep(context, join, executor); }),
               "an object changed while it was read");
 }
@@ -184,9 +179,9 @@ TEST(SweepChooser, TakesTheAxisThatSeparatesBest) {
     for (std::size_t i = 0; i < plates.size(); ++i) {
         plates[i] = {{0, float(i), 0}, {1, float(i) + 0.5f, 1}, std::uint32_t(i), 0};
     }
-    const GivenRule rule(plates, 0);
+    const GivenSource source(plates, 0);
     const std::vector<EntryId> ids = ids_of(plates);
-    const EntryList all(rule, ids);
+    const EntryList all(source, ids);
     const SweepChoice choice = SweepChooser({}).choose({all, all, true});
     EXPECT_EQ(choice.axis, 1u);
     EXPECT_TRUE(choice.good);
@@ -194,9 +189,9 @@ TEST(SweepChooser, TakesTheAxisThatSeparatesBest) {
 
 TEST(PartByShape, PartsBoxesByTheAxesOnWhichTheyAreLong) {
     const std::vector<Entry> rods = make_entries(Shape::rods, 90, 1);
-    const GivenRule rule(rods, 0);
+    const GivenSource source(rods, 0);
     const std::vector<EntryId> ids = ids_of(rods);
-    const auto parts = part_by_shape({rule, ids}, {});
+    const auto parts = part_by_shape({source, ids}, {});
     std::size_t all = 0;
     for (unsigned axes = 0; axes < 8; ++axes) {
         all += parts[axes].size();

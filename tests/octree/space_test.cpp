@@ -1,5 +1,5 @@
 // Tests Space: the map from coordinates to cells, and its kernel.
-#include "octree/space.hpp"
+#include "octree/plan/space.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "octree/given_rule.hpp"
+#include "octree/given_source.hpp"
 #include "octree/sweep/start_order.hpp"
 #include "support/compare.hpp"
 
@@ -182,9 +182,9 @@ TEST(StartOrder, SortsByLowEndThenPosition) {
             StartOrder order({});
             NoPairs none;
             SerialExecutor serial(none);
-            const GivenRule rule(entries, 0);
+            const GivenSource source(entries, 0);
             const std::vector<EntryId> ids = ids_of(entries);
-            const std::span<const SortKey> keys = order.sort({rule, ids}, 2, serial);
+            const std::span<const SortKey> keys = order.sort({source, ids}, 2, serial);
             const SweepSet expected = sorted_set(entries, 2);
             ASSERT_EQ(keys.size(), count);
             for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(position_of(keys[i]), expected.object()[i]);

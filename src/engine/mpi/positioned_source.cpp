@@ -20,12 +20,12 @@ void PositionedSource::PlaceTable::fill(std::span<const std::uint32_t> positions
 }
 
 PositionedSource::PositionedSource(const BoxSource& boxes, const ObjectPositions& positions)
-    : boxes_(boxes), positions_(positions) {
+    : ForwardingSource(boxes), positions_(positions) {
     for (unsigned set = 0; set < (join() ? 2 : 1); ++set) tables_[set].fill(positions.of_set[set]);
 }
 
 bool PositionedSource::load(std::size_t begin, std::span<Entry> out) const {
-    const bool good = boxes_.load(begin, out);
+    const bool good = source().load(begin, out);
     const auto& [first, second] = positions_.of_set;
     for (std::size_t i = 0; i < out.size(); ++i) {
         const std::size_t place = begin + i;
@@ -35,7 +35,7 @@ bool PositionedSource::load(std::size_t begin, std::span<Entry> out) const {
 }
 
 Float32Boxes PositionedSource::float32_boxes(std::size_t begin, std::span<Box3f> room) const {
-    Float32Boxes boxes = boxes_.float32_boxes(begin, room);
+    Float32Boxes boxes = source().float32_boxes(begin, room);
     boxes.objects = positions_.of_set[0].data() + begin;
     return boxes;
 }
@@ -85,7 +85,7 @@ std::size_t PositionedSource::refused(const DoubtfulPairs& doubtful, std::uint32
         find_places(std::span(places).first(2 * some));
         for (std::size_t i = 0; i < some; ++i) pairs[i] = {places[2 * i], places[2 * i + 1]};
         const std::size_t refused_here =
-            boxes_.refused({std::span(pairs).first(some), std::span(numbers).first(some)}, refused.data());
+            source().refused({std::span(pairs).first(some), std::span(numbers).first(some)}, refused.data());
         for (std::size_t i = 0; i < refused_here; ++i) out[count++] = doubtful.positions[begin + refused[i]];
     }
     return count;
@@ -98,7 +98,7 @@ void PositionedSource::load_bounds(std::span<Entry> entries) const {
     for (std::size_t i = 0; i < places.size(); i += most)
         find_places(std::span(places).subspan(i, std::min(most, places.size() - i)));
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].object = places[i];
-    boxes_.load_bounds(entries);
+    source().load_bounds(entries);
     for (std::size_t i = 0; i < entries.size(); ++i) entries[i].object = objects[i];
 }
 

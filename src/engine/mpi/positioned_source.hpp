@@ -19,21 +19,15 @@ struct ObjectPositions {
     std::uint32_t second_begin = 0;  ///< number of objects of the first set, on all ranks; 0 unless the call is a join
 };
 
-class PositionedSource final : public EntrySource, public PairRule {
+class PositionedSource final : public ForwardingSource {
 public:
     /// Borrows both arguments. `boxes`: the received objects. The place of an object is its number in `boxes`.
     PositionedSource(const BoxSource& boxes, const ObjectPositions& positions);
 
-    std::size_t size() const override { return boxes_.size(); }
     bool load(std::size_t begin, std::span<Entry> out) const override;
     Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override;
-    void pick(std::span<const std::size_t> places, std::span<Entry> out) const override { boxes_.pick(places, out); }
-
-    bool join() const override { return boxes_.join(); }
     std::uint32_t second_begin() const override { return positions_.second_begin; }
-    bool exact() const override { return boxes_.exact(); }
-    RoundingSlack slack() const override { return boxes_.slack(); }
-    bool is_pair(std::uint32_t a, std::uint32_t b) const override { return boxes_.is_pair(place(a), place(b)); }
+    bool is_pair(std::uint32_t a, std::uint32_t b) const override { return source().is_pair(place(a), place(b)); }
     std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override;
     void load_bounds(std::span<Entry> entries) const override;
 
@@ -57,7 +51,6 @@ private:
     std::uint32_t place(std::uint32_t object) const;
     void find_places(std::span<std::uint32_t> objects) const;
 
-    const BoxSource& boxes_;
     ObjectPositions positions_;
     std::array<PlaceTable, 2> tables_;  // by set
 };

@@ -79,16 +79,16 @@ void RankPasses::build(Call& call, double progress) {
     RankExecutor executor(threads, *stops_);
     positioned_.reset();
     if (share_.positions) positioned_.emplace(call.source, *share_.positions);
-    const EntrySource& source = positioned_ ? static_cast<const EntrySource&>(*positioned_) : call.source;
-    octree().build(std::move(share_.layout), source, executor, call.stop.get_token());
+    octree().build(std::move(share_.layout), searched(call), executor, call.stop.get_token());
     call.summary.entries = octree().entry_count(share_.begin, share_.end);
     call.summary.steps.encode = octree().seconds().encode;
     call.summary.steps.count = octree().seconds().count;
     call.summary.steps.scatter = octree().seconds().scatter;
 }
 
-const PairRule& RankPasses::pair_rule(const Call& call) const {
-    return positioned_ ? static_cast<const PairRule&>(*positioned_) : call.source;
+const EntrySource& RankPasses::searched(const Call& call) const {
+    if (positioned_) return *positioned_;
+    return call.source;
 }
 
 namespace {

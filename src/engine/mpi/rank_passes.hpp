@@ -13,7 +13,7 @@
 #include "engine/mpi/positioned_source.hpp"
 #include "engine/threads/thread_passes.hpp"
 #include "octree/executor.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 
 namespace octopair {
 
@@ -68,7 +68,7 @@ public:
     void build(Call& call, double progress) override;
 
 private:
-    const PairRule& pair_rule(const Call& call) const override;
+    const EntrySource& searched(const Call& call) const override;
     void scan_into(Call& call, Executor& executor, double progress) override;
 
     RankShare share_;

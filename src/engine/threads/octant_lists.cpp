@@ -13,7 +13,7 @@
 #include "engine/request.hpp"
 #include "engine/threads/writers.hpp"
 #include "octopair/error.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 
 namespace octopair {
 

@@ -13,7 +13,7 @@ void ThreadPasses::scan_into(Call& call, Executor& executor, double progress) {
 void ThreadPasses::scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress) {
     const Timed timed(call.summary.steps.scan);
     call.progress.stage(progress, octants.octree.entry_count(octants.begin, octants.end));
-    const ScanContext context{pair_rule(call), call.stop.get_token(), scan_memory_};
+    const ScanContext context{searched(call), call.stop.get_token(), scan_memory_};
     scan(octants, context, executor, [&](std::uint64_t entries) { call.progress.add(entries); });
 }
 

@@ -3,9 +3,9 @@
 
 #include "base/private_export.hpp"
 #include "engine/passes.hpp"
-#include "octree/linear_octree.hpp"
-#include "octree/scan.hpp"
-#include "octree/scan_memory.hpp"
+#include "octree/build/linear_octree.hpp"
+#include "octree/scan/scan.hpp"
+#include "octree/scan/scan_memory.hpp"
 #include "parallel/team.hpp"
 
 namespace octopair {
@@ -25,8 +25,8 @@ protected:
     Team& team() { return team_; }
     /// Returns the octree of the call's objects. Requires: build() was called.
     LinearOctree& octree() { return octree_; }
-    /// Returns the rule that decides which entries of the octree are pairs.
-    virtual const PairRule& pair_rule(const Call& call) const { return call.source; }
+    /// Returns the boxes that the octree is built of.
+    virtual const EntrySource& searched(const Call& call) const { return call.source; }
     /// Scans the whole octree once, and passes its pairs to the writers of `executor`.
     virtual void scan_into(Call& call, Executor& executor, double progress);
     /// Scans `octants` once, and passes their pairs to the writers of `executor`.

@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <span>
 
-#include "octree/directory.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/dynamic/small_block.hpp"
-#include "octree/space.hpp"
+#include "octree/plan/space.hpp"
 
 namespace octopair {
 

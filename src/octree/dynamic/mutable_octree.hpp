@@ -23,11 +23,11 @@
 #include <vector>
 
 #include "octopair/objects.hpp"
-#include "octree/directory.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/dynamic/leaf_grid.hpp"
 #include "octree/dynamic/small_block.hpp"
 #include "octree/dynamic/unit_blocks.hpp"
-#include "octree/space.hpp"
+#include "octree/plan/space.hpp"
 
 namespace octopair {
 

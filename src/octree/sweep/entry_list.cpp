@@ -14,7 +14,7 @@ EntryList EntryList::at(std::span<const std::uint32_t> positions) const {
 template <typename PositionAt>
 void EntryList::load_at(const PositionAt& position_at, std::span<Entry> out) const {
     constexpr std::size_t ahead = 32;
-    if (rule_ == nullptr) {
+    if (source_ == nullptr) {
         for (std::size_t i = 0; i < out.size(); ++i) {
             if (i + ahead < out.size()) prefetch(&whole_[position_at(i + ahead)]);
             out[i] = whole_[position_at(i)];
@@ -27,7 +27,7 @@ void EntryList::load_at(const PositionAt& position_at, std::span<Entry> out) con
         out[i].object = id.object;
         out[i].mask = id.mask;
     }
-    rule_->load_bounds(out);
+    source_->load_bounds(out);
 }
 
 void EntryList::load(std::size_t begin, std::span<Entry> out) const {

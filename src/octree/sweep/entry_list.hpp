@@ -12,24 +12,24 @@
 #include <vector>
 
 #include "base/memory.hpp"
-#include "boxes/pair_rule.hpp"
-#include "octree/sample.hpp"
+#include "boxes/entry_source.hpp"
+#include "octree/plan/sample.hpp"
 #include "octree/sweep/start_order.hpp"
 
 namespace octopair {
 
-/// An entry without bounds. A PairRule loads the bounds of `object` when a step needs them.
+/// An entry without bounds. A EntrySource loads the bounds of `object` when a step needs them.
 struct EntryId {
     std::uint32_t object;
     std::uint32_t mask;
 };
 
-/// A list of entries: all elements of a span, or the elements at some positions of the span. Borrows the spans and the pair rule.
+/// A list of entries: all elements of a span, or the elements at some positions of the span. Borrows the spans and the source.
 class EntryList {
 public:
     EntryList() = default;
     explicit EntryList(std::span<const Entry> whole) : whole_(whole) {}
-    EntryList(const PairRule& rule, std::span<const EntryId> ids) : rule_(&rule), ids_(ids) {}
+    EntryList(const EntrySource& source, std::span<const EntryId> ids) : source_(&source), ids_(ids) {}
 
     /// Returns the list of the entries at these positions of the span.
     EntryList at(std::span<const std::uint32_t> positions) const;
@@ -48,7 +48,7 @@ public:
     /// Calls body(position in the span, entry) for each entry, in order.
     template <typename Body>
     void for_each(Body&& body) const {
-        if (rule_ == nullptr) {
+        if (source_ == nullptr) {
             for (std::size_t i = 0; i < size(); ++i) body(position(i), whole_[position(i)]);
             return;
         }
@@ -66,7 +66,7 @@ private:
     void load_at(const PositionAt& position_at, std::span<Entry> out) const;
 
     std::span<const Entry> whole_;
-    const PairRule* rule_ = nullptr;  // loads the bounds of ids_; null if whole_ has the entries
+    const EntrySource* source_ = nullptr;  // loads the bounds of ids_; null if whole_ has the entries
     std::span<const EntryId> ids_;
     std::span<const std::uint32_t> positions_ = {};
     bool all_ = true;

@@ -35,11 +35,11 @@ void PairMaker::sweep(const Sweep& sweep, const Orientation& orientation) {
     SweepCursor cursor;
     bool repeated = false;  // for Fault::sweep_repeats_block
     const std::span<HitMask> room = std::span(hits_).first(tuning().sweep.hits);
-    const Depths depths = context_.rule.exact() ? Depths{} : certain_depths(sweep, slack_);
+    const Depths depths = context_.source.exact() ? Depths{} : certain_depths(sweep, slack_);
     while (cursor.row < sweep.rows.size()) {
         const std::span<HitMask> hits = std::span(hits_).first(sweep_rows(sweep, cursor, room));
         if (orientation != Orientation{}) drop_turned(sweep, hits, orientation);
-        if (!context_.rule.exact()) drop_rounded(sweep, depths, hits);
+        if (!context_.source.exact()) drop_rounded(sweep, depths, hits);
         if (has_test_hooks && context_.outermost) check(sweep, hits);
         drain(sweep, hits);
         if (cursor.row < sweep.rows.size()) {
@@ -66,7 +66,7 @@ void PairMaker::drop_rounded(const Sweep& sweep, const Depths& depths, std::span
     for (std::size_t i = 0; i < hits.size(); ++i) {
         filter(hits[i], hits[i].bits() & ~certain[i].bits(), [&](std::size_t row, std::size_t column) {
             count_path(Path::hit_settled);
-            return context_.rule.is_pair(sweep.rows.object()[row], sweep.columns.object()[column]);
+            return context_.source.is_pair(sweep.rows.object()[row], sweep.columns.object()[column]);
         });
     }
 }
@@ -92,7 +92,7 @@ void PairMaker::drain(const Sweep& sweep, std::span<const HitMask> hits) {
     while (!hits.empty()) {
         const std::size_t room = (tuning().sweep.pairs + max_hits - held_) / max_hits;
         const auto some = hits.first(std::min(hits.size(), room));
-        held_ += pairs_of_hits(sweep, some, context_.rule.second_begin(), pairs_.data() + held_);
+        held_ += pairs_of_hits(sweep, some, context_.source.second_begin(), pairs_.data() + held_);
         hits = hits.subspan(some.size());
         if (!hits.empty()) {
             count_path(Path::pairs_flushed);

@@ -12,7 +12,7 @@
 #include <stop_token>
 
 #include "base/tuning.hpp"
-#include "boxes/pair_rule.hpp"
+#include "boxes/entry_source.hpp"
 #include "octree/executor.hpp"
 #include "octree/reporting_octant.hpp"
 #include "octree/sweep/sweep.hpp"
@@ -32,7 +32,7 @@ class ScanMemoryPool;
 
 /// Parameters of a scan, the same for all shares.
 struct ScanContext {
-    const PairRule& rule;
+    const EntrySource& source;
     std::stop_token stop;
     ScanMemoryPool& memory;  ///< lends memory to each share
     unsigned nesting = 0;    ///< number of octrees around the scanned one
@@ -43,7 +43,7 @@ struct ScanContext {
 class PairMaker {
 public:
     PairMaker(const ScanContext& context, ShareWriter& writer)
-        : context_(context), slack_(context.rule.slack()), writer_(writer) {}
+        : context_(context), slack_(context.source.slack()), writer_(writer) {}
 
     /// Runs a sweep to its end.
     /// Throws: Error{cancelled}.

@@ -19,7 +19,7 @@
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
 #include "engine/mpi/partition/shared_top.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 
 namespace octopair {
 

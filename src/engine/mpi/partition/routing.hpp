@@ -24,10 +24,10 @@
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
-#include "octree/encode/box_locator.hpp"
-#include "octree/encode/build_steps.hpp"
+#include "octree/build/box_locator.hpp"
+#include "octree/build/build_steps.hpp"
 #include "octree/executor.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 
 namespace octopair {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "engine/mpi/comm/communicator.hpp"
-#include "octree/directory.hpp"
-#include "octree/encode/split_rule.hpp"
+#include "octree/plan/directory.hpp"
+#include "octree/plan/split_rule.hpp"
 
 namespace octopair {
 

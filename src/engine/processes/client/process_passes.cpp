@@ -8,7 +8,7 @@
 #include "base/tuning.hpp"
 #include "engine/processes/client/ring_reader.hpp"
 #include "octopair/error.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 
 namespace octopair {
 

@@ -7,7 +7,7 @@
 #include "base/control_group.hpp"
 #include "engine/processes/worker_timeouts.hpp"
 #include "octopair/error.hpp"
-#include "octree/linear_octree.hpp"
+#include "octree/build/linear_octree.hpp"
 
 namespace octopair {
 

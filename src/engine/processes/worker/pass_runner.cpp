@@ -12,7 +12,7 @@
 #include "base/tuning.hpp"
 #include "engine/processes/worker/shared_buckets.hpp"
 #include "octopair/error.hpp"
-#include "octree/scan.hpp"
+#include "octree/scan/scan.hpp"
 
 namespace octopair {
 
@@ -34,20 +34,17 @@ struct Set {
 };
 
 /// Notifies an observer whenever boxes are read.
-class ObservedSource final : public EntrySource {
+class ObservedSource final : public ForwardingSource {
 public:
-    ObservedSource(const EntrySource& source, ShareObserver* observer) : source_(source), observer_(observer) {}
-    std::size_t size() const override { return source_.size(); }
+    ObservedSource(const EntrySource& source, ShareObserver* observer)
+        : ForwardingSource(source), observer_(observer) {}
     bool load(std::size_t begin, std::span<Entry> out) const override {
         tick();
-        return source_.load(begin, out);
+        return source().load(begin, out);
     }
     Float32Boxes float32_boxes(std::size_t begin, std::span<Box3f> room) const override {
         tick();
-        return source_.float32_boxes(begin, room);
-    }
-    void pick(std::span<const std::size_t> positions, std::span<Entry> out) const override {
-        source_.pick(positions, out);
+        return source().float32_boxes(begin, room);
     }
 
 private:
@@ -55,7 +52,6 @@ private:
         if (observer_ != nullptr) observer_->tick();
     }
 
-    const EntrySource& source_;
     ShareObserver* observer_;
 };
 

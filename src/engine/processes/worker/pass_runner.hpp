@@ -10,8 +10,8 @@
 #include "engine/processes/worker/share_output.hpp"
 #include "engine/processes/worker/work_sharing.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
-#include "octree/linear_octree.hpp"
-#include "octree/scan_memory.hpp"
+#include "octree/build/linear_octree.hpp"
+#include "octree/scan/scan_memory.hpp"
 
 namespace octopair {
 

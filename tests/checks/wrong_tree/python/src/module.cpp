@@ -1,2 +1,2 @@
 // Breaks the rule that the Python package uses only public headers.
-#include "octree/scan.hpp"
+#include "octree/scan/scan.hpp"

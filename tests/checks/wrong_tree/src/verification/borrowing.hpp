@@ -2,4 +2,4 @@
 // Start here to change what no table names.
 #pragma once
 
-#include "octree/scan.hpp"
+#include "octree/scan/scan.hpp"

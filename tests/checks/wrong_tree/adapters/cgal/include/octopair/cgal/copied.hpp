@@ -3,4 +3,4 @@
 
 #include <CGAL/box_intersection_d.h>
 
-#include "octree/scan.hpp"
+#include "octree/scan/scan.hpp"

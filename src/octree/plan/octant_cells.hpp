@@ -1,0 +1,115 @@
+// CellEntry: an entry in 16 bytes, with its bounds in cells of its octant.
+//
+// Invariants
+//   An octant has 2^15 cells on each axis. OctantCells::cell() maps coordinates to them. It is monotone, and the same for all
+//   entries of the octant. So if one cell is less than another, the same holds for the coordinates.
+//   Coordinates before or behind the octant get its first or last cell.
+//   The flags are the bits of Entry::mask. Two entries are a pair only if they share no flag.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "boxes/entry.hpp"
+#include "octree/plan/directory.hpp"
+#include "octree/plan/space.hpp"
+
+namespace octopair {
+
+inline constexpr unsigned cell_bits = 15;
+inline constexpr std::uint32_t last_octant_cell = (1u << cell_bits) - 1;
+
+struct alignas(16) CellEntry {
+    /// By axis of the sweep: bits 0 to 14 the cell of the low end, bits 16 to 30 the cell of the high end, bits 15 and 31
+    /// flags. Bit 15: class bit of this axis. Bit 31: first_set, second_set or fixed_object, one on each axis.
+    std::array<std::uint32_t, 3> ends;
+    std::uint32_t object;
+
+    static constexpr std::uint32_t flag_bits = 0x80008000;
+    static constexpr std::uint32_t end_bits = ~flag_bits;
+
+    std::uint32_t low(unsigned k) const { return ends[k] & last_octant_cell; }
+    std::uint32_t high(unsigned k) const { return ends[k] >> 16 & last_octant_cell; }
+    /// True if the entries share a flag, so that they are no pair of this octant.
+    friend bool share_flag(const CellEntry& a, const CellEntry& b) {
+        return (((a.ends[0] & b.ends[0]) | (a.ends[1] & b.ends[1]) | (a.ends[2] & b.ends[2])) & flag_bits) != 0;
+    }
+};
+static_assert(sizeof(CellEntry) == 16);
+
+/// Map from coordinates to the cells of one octant. The first axis is the long axis of the space.
+/// Specification of cell_entries() (cell_sweep.hpp) and of BatchEncoder (octree/build/batch_encoder.hpp).
+struct OctantCells {
+    /// Up to this level an octant has as many fine cells as cells, or more. Deeper octants map coordinates from an origin of
+    /// their own: float32 numbers near each other have more digits relative to this origin.
+    static constexpr unsigned max_fine_level = SpaceMap::bits - cell_bits;
+
+    SpaceMap map;
+    std::array<std::uint32_t, 4> first = {0, 0, 0, 0};  ///< by coordinate axis: first fine cell
+    std::uint32_t last_offset = 0;                      ///< number of fine cells on an axis, minus 1
+    unsigned level = 0;
+    std::array<unsigned, 3> axes = {0, 1, 2};    ///< coordinate axis of each axis of the sweep
+    std::array<float, 4> origin = {0, 0, 0, 0};  ///< by coordinate axis: where a deep octant begins
+    std::array<float, 4> scale = {1, 1, 1, 0};   ///< cells of a deep octant for each unit of length
+
+    OctantCells() = default;
+    OctantCells(const Space& space, const Octant& octant)
+        : map(space.map()), last_offset(SpaceMap::last_fine_cell >> octant.level), level(octant.level) {
+        for (unsigned axis = 0; axis < 3; ++axis) first[axis] = octant.lo[axis] << SpaceMap::fine_bits;
+        for (unsigned k = 0; k < 3; ++k) axes[k] = (space.long_axis() + k) % 3;
+        if (!is_deep()) return;
+        origin = deep_origin(map, octant);
+        for (unsigned axis = 0; axis < 3; ++axis) scale[axis] = map.scale[axis] * deep_factor(level);
+    }
+    bool is_deep() const { return level > max_fine_level; }
+
+    static std::array<float, 4> deep_origin(const SpaceMap& map, const Octant& octant) {
+        std::array<float, 4> origin = {0, 0, 0, 0};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const double begin =
+                double(octant.lo[axis] << SpaceMap::fine_bits) - 0.5;  // the map rounds to the nearest cell
+            origin[axis] = float(double(map.origin[axis]) + begin / double(map.scale[axis]));
+        }
+        return origin;
+    }
+    /// Returns the number of cells for each fine cell, a power of two.
+    static float deep_factor(unsigned level) { return std::bit_cast<float>((127 + level - max_fine_level) << 23); }
+
+    std::uint32_t cell(float coordinate, unsigned axis) const {
+        if (is_deep()) {
+            const float in_octant = (coordinate - origin[axis]) * scale[axis];
+            const float below = in_octant > 0.0f ? in_octant : 0.0f;
+            const float clamped = below < float(last_octant_cell) ? below : float(last_octant_cell);
+            return std::bit_cast<std::uint32_t>(clamped + SpaceMap::whole) & last_octant_cell;
+        }
+        const std::uint32_t fine_cell = map.fine_cell(coordinate, axis);
+        const std::uint32_t clamped = std::clamp(fine_cell, first[axis], first[axis] + last_offset);
+        return (clamped << level & SpaceMap::last_fine_cell) >> max_fine_level;
+    }
+    CellEntry entry(const Entry& entry) const {
+        CellEntry cells;
+        for (unsigned k = 0; k < 3; ++k) {
+            const unsigned axis = axes[k];
+            const std::uint32_t low = cell(entry.min[axis], axis), high = cell(entry.max[axis], axis);
+            cells.ends[k] = low | high << 16 | flags_of(entry.mask, k);
+        }
+        cells.object = entry.object;
+        return cells;
+    }
+    /// Returns the flags of ends[k] for a mask of boxes/entry.hpp.
+    std::uint32_t flags_of(std::uint32_t mask, unsigned k) const {
+        return (mask >> axes[k] & 1u) << 15 | (mask >> (3 + k) & 1u) << 31;
+    }
+    /// Returns the mask that the flags of an entry stand for.
+    std::uint32_t mask_of(const CellEntry& entry) const {
+        std::uint32_t mask = 0;
+        for (unsigned k = 0; k < 3; ++k) {
+            mask |= (entry.ends[k] >> 15 & 1u) << axes[k] | (entry.ends[k] >> 31) << (3 + k);
+        }
+        return mask;
+    }
+};
+
+}  // namespace octopair

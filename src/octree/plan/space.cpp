@@ -1,0 +1,144 @@
+#include "octree/plan/space.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "base/tuning.hpp"
+
+namespace octopair {
+
+namespace {
+
+/// Range of the bulk of the objects on one axis, and the extent of a typical object.
+struct AxisFit {
+    double begin = 0, end = 0, typical = 0;
+    double extent() const { return end - begin; }
+};
+
+/// Returns the range between the 1/64 quantiles, plus a quarter on each side, but within the range of the sample.
+AxisFit fit_axis(std::span<const SpaceSample::Measured, SpaceSample::measures> measured) {
+    const SpaceSample::Measured &lows = measured[0], &highs = measured[1], &extents = measured[2];
+    const double quarter = std::max(0.0, highs.quantile - lows.quantile) / 4;
+    AxisFit fit;
+    fit.begin = std::max(lows.extreme, lows.quantile - quarter);
+    fit.end = std::max(fit.begin, std::min(highs.extreme, highs.quantile + quarter));
+    fit.typical = std::max(0.0, extents.quantile);
+    return fit;
+}
+
+}  // namespace
+
+SpaceSample::SpaceSample(std::size_t sampled) : stride_(sampled / tuning().sampling.space_objects + 1) {}
+
+SpaceSample::Measured SpaceSample::measure(std::span<const Interval> intervals, Measure what) {
+    std::vector<double> values;
+    values.reserve(intervals.size());
+    for (const Interval& interval : intervals) {
+        const double low = double(interval.low), high = double(interval.high);
+        if (!(std::abs(low) <= double(FLT_MAX) && std::abs(high) <= double(FLT_MAX))) continue;  // refused later
+        values.push_back(what == Measure::low ? low : what == Measure::high ? high : high - low);
+    }
+    if (values.empty()) return {};
+    if (what == Measure::extent) {
+        const auto median = values.begin() + std::ptrdiff_t(values.size() / 2);
+        std::nth_element(values.begin(), median, values.end());
+        return {*median, *std::max_element(median, values.end())};
+    }
+    // Only 1/64 of the values is beyond the quantile. Sorting these values alone takes less time than partitioning all values.
+    const auto quantile = values.begin() + std::ptrdiff_t(values.size() / 64);
+    if (what == Measure::low) {
+        std::partial_sort(values.begin(), quantile + 1, values.end());
+    } else {
+        std::partial_sort(values.begin(), quantile + 1, values.end(), std::greater<>());
+    }
+    return {*quantile, values.front()};
+}
+
+namespace {
+
+/// Returns an estimate of the distance between neighbouring objects: a power of two near the cube root of volume / objects. Ignores axes
+/// without extent: with two axes, it is the square root of area / objects.
+double spacing(const std::array<AxisFit, 3>& axes, std::uint64_t objects) {
+    int exponent = -int(std::bit_width(objects));
+    int dimensions = 0;
+    for (const AxisFit& axis : axes) {
+        if (axis.extent() <= 0) continue;
+        int own = 0;
+        (void)std::frexp(axis.extent(), &own);
+        exponent += own;
+        ++dimensions;
+    }
+    return dimensions == 0 ? 1.0 : std::ldexp(1.0, exponent / dimensions);
+}
+
+}  // namespace
+
+Space Space::fit(std::span<const Entry> sample, std::uint64_t objects) {
+    const SpaceSample chosen(sample.size());
+    SpaceSample::AllMeasured measured;
+    std::vector<SpaceSample::Interval> intervals;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        intervals.clear();
+        for (std::size_t i = 0; i < sample.size(); ++i) {
+            if (chosen.has(i)) intervals.push_back({sample[i].min[axis], sample[i].max[axis]});
+        }
+        for (unsigned what = 0; what < SpaceSample::measures; ++what) {
+            measured[axis * SpaceSample::measures + what] = SpaceSample::measure(intervals, SpaceSample::Measure(what));
+        }
+    }
+    return fit(measured, objects);
+}
+
+Space Space::fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects) {
+    std::array<AxisFit, 3> axes;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        axes[axis] = fit_axis(std::span(measured).subspan(axis * SpaceSample::measures).first<SpaceSample::measures>());
+    }
+    const double neighbour = spacing(axes, objects);
+
+    // An octant has the shape of one object with the free space around it.
+    std::array<double, 3> shape{};
+    double max_octants = 0;
+    Space space;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        shape[axis] = neighbour + axes[axis].typical;
+        const double octants = axes[axis].extent() / shape[axis];
+        if (octants > max_octants) {
+            max_octants = octants;
+            space.long_axis_ = axis;
+        }
+    }
+    shape[space.long_axis_] *= 4;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double length = shape[axis] * max_octants;
+        const double scale = length > 0 ? double(SpaceMap::last_fine_cell + 1) / length : 1.0;
+        space.map_.origin[axis] = float(axes[axis].begin);
+        space.map_.scale[axis] = float(std::clamp(scale, double(FLT_MIN), double(FLT_MAX)));
+        constexpr std::uint32_t last_in_cell = (1u << SpaceMap::fine_bits) - 1;
+        space.map_.last[axis] = float(space.map_.fine_cell(float(axes[axis].end), axis) | last_in_cell);
+    }
+    return space;
+}
+
+Box3d Space::bounds(const CellBox& cells) const {
+    // One more cell on each side covers the rounding to cells; `roundings` covers the float32 operations of the map.
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double roundings = 0x1p-21;
+    Box3d bounds;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const double origin = double(map_.origin[axis]), cell = (1u << SpaceMap::fine_bits) / double(map_.scale[axis]);
+        // Limits the offset to FLT_MAX: in the map, a greater difference overflows and gets the last cell, so no cell begins there.
+        const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
+        const double hi = origin + (double(cells.hi[axis]) + 1) * cell;
+        bounds.min[axis] = cells.lo[axis] == 0 ? -infinity : lo - roundings * (std::abs(origin) + std::abs(lo));
+        bounds.max[axis] =
+            cells.hi[axis] >= last_cell(axis) ? infinity : hi + roundings * (std::abs(origin) + std::abs(hi));
+    }
+    return bounds;
+}
+
+}  // namespace octopair

@@ -1,0 +1,114 @@
+#include "octree/plan/split_rule.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "base/stop.hpp"
+#include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+
+namespace octopair {
+
+namespace {
+
+using SampledBoxes = SampledOctant::Boxes;
+
+/// Copies each box into the list `list` of each child of `octant` that the box touches.
+/// Requires: all boxes touch `octant`.
+void hand_down(const OctantCube& octant, const SampledBoxes& boxes, std::array<SampledOctant, 8>& below,
+               SampledBoxes SampledOctant::*list) {
+    for (SampledOctant& child : below) (child.*list).reserve(boxes.size() / 6);
+    for (const CellBox& box : boxes) {
+        for (unsigned touched = octant.touched_below(box); touched != 0; touched &= touched - 1)
+            (below[unsigned(std::countr_zero(touched))].*list).push_back(box);
+    }
+}
+
+}  // namespace
+
+OctantCube OctantCube::child(unsigned digit) const {
+    OctantCube below{lo, level + 1};
+    const std::uint32_t side = cells_per_axis >> below.level;
+    for (unsigned axis = 0; axis < 3; ++axis) below.lo[axis] += (digit >> axis & 1u) * side;
+    return below;
+}
+
+void SampledOctant::keep() {
+    const auto fits = [&](const CellBox& box) { return !octant.keeps(box); };
+    const auto too_large = std::partition(inside.begin(), inside.end(), fits);
+    kept.insert(kept.end(), too_large, inside.end());
+    inside.erase(too_large, inside.end());
+}
+
+std::array<SampledOctant, 8> SampledOctant::divided() const {
+    std::array<SampledOctant, 8> below;
+    for (unsigned digit = 0; digit < 8; ++digit) below[digit].octant = octant.child(digit);
+    hand_down(octant, inside, below, &SampledOctant::inside);
+    hand_down(octant, kept, below, &SampledOctant::kept);
+    return below;
+}
+
+OctantCounts OctantCounts::of(const SampledOctant& sampled, const std::array<SampledOctant, 8>& below) {
+    OctantCounts counts{.inside = sampled.inside.size(), .kept = sampled.kept.size()};
+    counts.beginning = std::uint64_t(
+        std::ranges::count_if(sampled.inside, [&](const CellBox& box) { return sampled.octant.holds_begin(box); }));
+    for (const SampledOctant& child : below) {
+        counts.inside_below += child.inside.size();
+        counts.kept_below += child.kept.size();
+    }
+    return counts;
+}
+
+bool SplitRule::is_crowd(std::uint64_t inside) const { return double(inside) * weight_ > tuning().split.always_above; }
+
+bool SplitRule::crowded(const SampledOctant& sampled) const {
+    const OctantCube& octant = sampled.octant;
+    const double objects = double(sampled.inside.size()) * weight_;
+    if (objects <= tuning().split.never_up_to) {
+        count_path(Path::octant_too_small);
+        return false;
+    }
+    if (is_crowd(sampled.inside.size())) return true;
+    double window = objects;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        std::uint32_t first = cells_per_axis;
+        std::uint32_t last = 0;
+        std::uint64_t extents = 0;
+        const std::uint32_t end = octant.lo[axis] + ((cells_per_axis >> octant.level) - 1);
+        for (const CellBox& box : sampled.inside) {
+            const std::uint32_t lo = std::max(box.lo[axis], octant.lo[axis]);
+            first = std::min(first, lo);
+            last = std::max(last, lo);
+            extents += std::min(box.hi[axis], end) - lo + 1;
+        }
+        const double extent = double(extents) / double(sampled.inside.size());
+        window = std::min(window, objects * extent / (double(last - first) + extent));
+    }
+    const bool wide = window > tuning().split.max_tests_per_object;
+    if (!wide) count_path(Path::octant_well_swept);
+    return wide;
+}
+
+bool SplitRule::worth_splitting(const OctantCounts& counts) {
+    return double(counts.inside_below) <= tuning().split.max_entries_per_object * double(counts.beginning) &&
+           double(counts.inside_below + counts.kept_below) <=
+               tuning().split.max_handed_growth * double(counts.inside + counts.kept);
+}
+
+void SplitRule::grow(SampledOctant sampled, SplitFlags& shape) const {
+    throw_if_stopped(stop_);
+    const std::size_t index = shape.size();
+    shape.push_back(0);
+    sampled.keep();
+    if (sampled.octant.level >= deepest) return count_path(Path::octant_deepest);
+    if (!crowded(sampled)) return;
+    std::array<SampledOctant, 8> below = sampled.divided();
+    if (!worth_splitting(OctantCounts::of(sampled, below))) return count_path(Path::octant_multiplies);
+    count_path(Path::octant_divided);
+    sampled = {};
+    shape[index] = 1;
+    for (SampledOctant& child : below) grow(std::exchange(child, {}), shape);
+}
+
+}  // namespace octopair

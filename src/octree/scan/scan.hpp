@@ -1,0 +1,40 @@
+// Scan: finds all pairs of a linear octree in one pass over its octants, in pre-order.
+//
+// Invariants
+//   An octant's own entries are swept against each other and against the entries handed down to the octant. An entry that
+//   is handed down touches the octant, but an octant above keeps it, because it is too large for smaller octants.
+//   Two entries are compared only if they are in one octant, or if the octant of one entry is inside the octant of the other.
+//   The masks of two entries decide which octant reports them as a pair (reporting_octant.hpp).
+//
+// If a sweep of an octant would cost too much, the octant's entries become a nested linear octree with a space of its own.
+// If nesting would not give smaller octants, recursive_sweep.hpp is used. Both decisions are functions of the entries alone.
+//
+// Source: Lucchesi, Egbert, Harris 2014, section 3.3, step 7.
+#pragma once
+
+#include <functional>
+
+#include "octree/build/linear_octree.hpp"
+#include "octree/sweep/pair_maker.hpp"
+
+namespace octopair {
+
+/// The octants [begin, end) of an octree, in pre-order. Borrows the octree.
+struct OctreeRange {
+    OctreeRange(const LinearOctree& whole)  // NOLINT(google-explicit-constructor): a tree is a range of itself
+        : OctreeRange(whole, 0, OctantIndex(whole.octants().size())) {}
+    OctreeRange(const LinearOctree& tree, OctantIndex first, OctantIndex last)
+        : octree(tree), begin(first), end(last) {}
+
+    const LinearOctree& octree;
+    OctantIndex begin, end;
+};
+
+/// Writes the pairs that `octants` report, in pre-order of octants. From octants outside the range, reads only the entries
+/// that are handed down into it. Calls `progress`, unless empty, with the number of entries of each finished share, on any
+/// thread of the executor.
+/// Throws: Error{cancelled}.
+void scan(const OctreeRange& octants, const ScanContext& context, Executor& executor,
+          const std::function<void(std::uint64_t)>& progress);
+
+}  // namespace octopair
