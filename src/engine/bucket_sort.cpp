@@ -12,16 +12,6 @@
 
 namespace octopair {
 
-namespace {
-
-std::size_t size_of(const std::vector<PageString>& strings) {
-    std::size_t size = 0;
-    for (const PageString& string : strings) size += string.size();
-    return size;
-}
-
-}  // namespace
-
 BucketPlan::BucketPlan(const AscendingBounds& bounds, unsigned fillers) : keys_(bounds.rows, bounds.columns) {
     const std::uint64_t spare_pages = bounds.max_pairs / page_pairs() / 4 / fillers;
     const unsigned row_bits = keys_.row_bits();
@@ -111,7 +101,7 @@ BucketSort::Runs BucketSort::sort(std::vector<PageString>&& strings, const std::
 
 /// Requires: the keys of all pairs differ only in their lowest `bits`.
 void BucketSort::sort(std::vector<PageString>&& strings, unsigned bits, CallState& state) {
-    const std::size_t size = size_of(strings);
+    const std::size_t size = std::size_t(pairs_in(strings));
     if (size == 0) return;
     throw_if_stopped(state.stop);
     if (size > tuning().output.sorted_at_once && bits > 0) {
@@ -167,7 +157,7 @@ void BucketSort::sort_in_slots(const std::vector<PageString>& strings, unsigned 
     count_path(Path::bucket_in_slots);
     const PairKeys& keys = plan_.keys();
     const auto [rows, first_row] = rows_of(strings, bits, keys);
-    slotted_.reset(rows, size_of(strings), std::uint32_t(first_row));
+    slotted_.reset(rows, std::size_t(pairs_in(strings)), std::uint32_t(first_row));
     for (const PageString& string : strings) {
         for (std::size_t i = string.pages().size(); i-- > 0;) {  // the page returned last is taken first
             slotted_.add(string.page(i), i > 0 ? string.page(i - 1) : std::span<Pair>());

@@ -39,9 +39,6 @@ struct AscendingBounds {
     std::uint64_t expected = 0;                       ///< expected number of pairs; 0: unknown
 };
 
-/// Thrown by a pass that needs more pages than `max_pairs` allows. At most a quarter of its pages are then partly filled.
-struct OverBudget {};
-
 /// Maps pairs to integer keys in ascending order of pairs. Keys have only the bits that the rows and columns need.
 class PairKeys {
 public:

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,11 +19,42 @@ namespace octopair {
 /// Returns the capacity of a page in pairs.
 inline std::size_t page_pairs() { return tuning().output.page; }
 
-/// Page allocator of one thread, with a free list.
+/// Thrown by a pass that needs more pages than its budget allows. At most a quarter of its pages are then partly filled.
+struct OverBudget {};
+
+/// Number of pages that all threads or workers of a pass together may still take. Also counts the pages that one thread or worker took.
+/// Thread safety: any thread.
+class PageBudget {
+public:
+    /// Borrows both numbers, which may be in shared memory.
+    PageBudget(std::atomic<std::int64_t>& left, std::atomic<std::uint64_t>& taken) : left_(&left), taken_(&taken) {}
+
+    /// Throws: OverBudget.
+    void take_page() {
+        if (ended_) return;
+        taken_->fetch_add(1);
+        if (left_->fetch_sub(1) <= 0) throw OverBudget{};
+    }
+    std::uint64_t taken() const { return taken_->load(); }
+    /// Sets the number of pages that were taken, and returns the difference to the pages that are left.
+    void restore(std::uint64_t taken) { left_->fetch_add(std::int64_t(taken_->exchange(taken) - taken)); }
+    /// From now on, pages are not limited: sorting a bucket takes more pages than it returns, if the bucket is split.
+    void end() { ended_ = true; }
+
+private:
+    std::atomic<std::int64_t>* left_;
+    std::atomic<std::uint64_t>* taken_;
+    bool ended_ = false;
+};
+
+/// Page allocator of one thread or worker, with a free list.
 class Pages {
 public:
-    virtual ~Pages() = default;
+    /// `next_block` returns memory for at least one page. Borrows the budget.
+    Pages(std::function<std::span<Pair>()> next_block, PageBudget& budget)
+        : next_block_(std::move(next_block)), budget_(budget) {}
 
+    /// Throws: OverBudget.
     Pair* take() {
         if (returned_.empty()) return fresh();
         Pair* page = returned_.back();
@@ -30,9 +64,17 @@ public:
     void give_back(Pair* page) { returned_.push_back(page); }
 
 private:
-    /// Returns a new page. Throws: OverBudget (bucket_sort.hpp).
-    virtual Pair* fresh() = 0;
+    Pair* fresh() {
+        budget_.take_page();
+        if (block_.size() < page_pairs()) block_ = next_block_();
+        Pair* const page = block_.data();
+        block_ = block_.subspan(page_pairs());
+        return page;
+    }
 
+    std::function<std::span<Pair>()> next_block_;
+    PageBudget& budget_;
+    std::span<Pair> block_;
     std::vector<Pair*> returned_;
 };
 
@@ -70,5 +112,20 @@ private:
     Pair* next_ = nullptr;
     Pair* end_ = nullptr;
 };
+
+/// Returns the number of pairs in all strings.
+inline std::uint64_t pairs_in(std::span<const PageString> strings) {
+    std::uint64_t pairs = 0;
+    for (const PageString& string : strings) pairs += string.size();
+    return pairs;
+}
+
+/// Takes the strings of one bucket from the buckets of all threads or workers.
+inline std::vector<PageString> take_bucket(std::span<std::vector<PageString>> of_fillers, std::size_t bucket) {
+    std::vector<PageString> strings;
+    strings.reserve(of_fillers.size());
+    for (auto& buckets : of_fillers) strings.push_back(std::exchange(buckets[bucket], {}));
+    return strings;
+}
 
 }  // namespace octopair

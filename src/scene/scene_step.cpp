@@ -12,7 +12,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "engine/threads/ascending.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
 #include "octree/scan/scan.hpp"
 #include "scene/scene_state.hpp"
@@ -164,9 +164,9 @@ void Scene::State::find_all(const std::stop_token& stop) {
     build(source, stop);
     detail::PairStorage& fresh = detail::storage_of(history_.fresh());
     fresh.reset();
-    AscendingExecutor ascending(team_, fresh, {{0, objects_.table().indices()}, objects_.table().indices()});
-    scan(linear_, {source, stop, scan_memory_}, ascending, {});
-    ascending.append_sorted(stop);
+    const std::uint64_t indices = objects_.table().indices();
+    const auto find = [&](Executor& executor) { scan(linear_, {source, stop, scan_memory_}, executor, {}); };
+    list_ascending_pairs(team_, fresh, {{0, indices}, indices}, find, {stop});
     full_seconds_ = seconds_since(begin);
     const double guess =
         initial_change_cost * full_seconds_ / double(std::max<std::uint64_t>(1, objects_.table().size()));

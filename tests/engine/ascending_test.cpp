@@ -1,5 +1,5 @@
 // Tests ascending order of pairs, for any distribution of pairs over threads and any number of pages.
-#include "engine/threads/ascending.hpp"
+#include "engine/threads/team_output.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,14 +33,17 @@ std::vector<Pair> random_pairs(std::size_t count, std::uint32_t objects, std::si
 std::vector<Pair> sorted_by(unsigned threads, const std::vector<Pair>& pairs, const AscendingBounds& bounds) {
     Team team(threads);
     PairList list;
-    AscendingExecutor executor(team, detail::storage_of(list), bounds);
-    executor.for_each_writing(100, [&](std::size_t i, ShareWriter& writer) {
-        const std::size_t begin = pairs.size() * i / 100, end = pairs.size() * (i + 1) / 100;
-        writer.write(std::span(pairs).subspan(begin, end - begin));
-    });
-    const std::uint64_t wanted = executor.pairs();
+    std::uint64_t wanted = 0;
     std::atomic<std::uint64_t> sorted = 0;
-    executor.append_sorted({}, [&](std::uint64_t of_bucket) { sorted += of_bucket; });
+    const auto write_pairs = [&](Executor& executor) {
+        executor.for_each_writing(100, [&](std::size_t i, ShareWriter& writer) {
+            const std::size_t begin = pairs.size() * i / 100, end = pairs.size() * (i + 1) / 100;
+            writer.write(std::span(pairs).subspan(begin, end - begin));
+        });
+    };
+    list_ascending_pairs(team, detail::storage_of(list), bounds, write_pairs,
+                         {.begin = [&](std::uint64_t found) { wanted = found; },
+                          .sorted = [&](std::uint64_t of_bucket) { sorted += of_bucket; }});
     EXPECT_EQ(sorted, wanted);
     EXPECT_EQ(list.size(), wanted);
     EXPECT_EQ(list.size(), list.to_vector().size());

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "engine/threads/writers.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
 #include "support/errors.hpp"
 
@@ -21,15 +21,18 @@ protected:
     /// Returns the output of shares that write their number `each` times.
     std::vector<Pair> stream(std::size_t shares, std::size_t each, std::uint64_t buffer) {
         std::vector<Pair> all;
-        StreamExecutor executor(
-            team_, [&](std::span<const Pair> pairs) { all.insert(all.end(), pairs.begin(), pairs.end()); }, buffer,
-            stop_);
-        executor.for_each_writing(shares, [&](std::size_t share, ShareWriter& writer) {
+        const auto append = [&](std::span<const Pair> pairs) { all.insert(all.end(), pairs.begin(), pairs.end()); };
+        run(shares, {append, buffer, stop_}, [&](std::size_t share, ShareWriter& writer) {
             const Pair pair{std::uint32_t(share), 0};
             for (std::size_t i = 0; i < each; ++i) writer.write({&pair, 1});
         });
         return all;
     }
+
+    void run(std::size_t shares, const StreamTo& to, const std::function<void(std::size_t, ShareWriter&)>& share) {
+        stream_pairs(team_, to, [&](Executor& executor) { executor.for_each_writing(shares, share); });
+    }
+    const PairSink ignore_ = [](std::span<const Pair>) {};
 
     Team team_{GetParam()};
     std::stop_source stop_;
@@ -61,9 +64,7 @@ TEST_P(StreamOfThreads, RunSharesSideBySide) {
     std::mutex mutex;
     std::condition_variable changed;
     std::size_t begun = 0, alone = 0;
-    StreamExecutor executor(
-        team_, [](std::span<const Pair>) {}, 1000, stop_);
-    executor.for_each_writing(shares, [&](std::size_t share, ShareWriter&) {
+    run(shares, {ignore_, 1000, stop_}, [&](std::size_t share, ShareWriter&) {
         std::unique_lock lock(mutex);
         begun = std::max(begun, share + 1);
         changed.notify_all();
@@ -74,10 +75,8 @@ TEST_P(StreamOfThreads, RunSharesSideBySide) {
 }
 
 TEST_P(Stream, TellsTheFirstFailure) {
-    StreamExecutor executor(
-        team_, [](std::span<const Pair>) {}, 10, stop_);
-    const auto run = [&] {
-        executor.for_each_writing(50, [&](std::size_t share, ShareWriter& writer) {
+    const auto fail = [&] {
+        run(50, {ignore_, 10, stop_}, [&](std::size_t share, ShareWriter& writer) {
             if (share == 20) throw Error(ErrorCode::resource_limit, "twenty");
             const Pair pair{std::uint32_t(share), 0};
             for (int i = 0; i < 100; ++i) {
@@ -86,24 +85,21 @@ TEST_P(Stream, TellsTheFirstFailure) {
             }
         });
     };
-    EXPECT_EQ(error_of(ErrorCode::resource_limit, run), "twenty");
+    EXPECT_EQ(error_of(ErrorCode::resource_limit, fail), "twenty");
     EXPECT_TRUE(stop_.stop_requested());
 }
 
 TEST_P(Stream, EndsWhereItsReceiverFails) {
     std::size_t received = 0;
-    StreamExecutor executor(
-        team_,
-        [&](std::span<const Pair> pairs) {
-            received += pairs.size();
-            if (received >= 700) throw 7;
-        },
-        100, stop_);
-    EXPECT_THROW(executor.for_each_writing(100,
-                                           [](std::size_t share, ShareWriter& writer) {
-                                               const Pair pair{std::uint32_t(share), 0};
-                                               for (int i = 0; i < 50; ++i) writer.write({&pair, 1});
-                                           }),
+    const PairSink receive = [&](std::span<const Pair> pairs) {
+        received += pairs.size();
+        if (received >= 700) throw 7;
+    };
+    EXPECT_THROW(run(100, {receive, 100, stop_},
+                     [](std::size_t share, ShareWriter& writer) {
+                         const Pair pair{std::uint32_t(share), 0};
+                         for (int i = 0; i < 50; ++i) writer.write({&pair, 1});
+                     }),
                  int);
     EXPECT_LT(received, 1000u);
 }

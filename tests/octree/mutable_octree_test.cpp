@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "boxes/box_source.hpp"
-#include "engine/threads/writers.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
 #include "octree/build/linear_octree.hpp"

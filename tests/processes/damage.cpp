@@ -37,6 +37,7 @@ public:
 
     void begin(Step) override { perhaps(40); }
     void tick() override { perhaps(300); }
+    void reach(CommitPoint) override { perhaps(80); }
     void end() override { perhaps(40); }
 
 private:

@@ -18,13 +18,15 @@ namespace octopair::test {
 
 /// `mute`: the worker fails without a message and stays alive. This is not counted as a loss.
 enum class FaultKind : std::uint32_t { kill, crash, stop, mute };
-enum class Moment : std::uint32_t { begin, tick, end };
+/// In a share: at its begin, while it runs, in its commit (CommitPoint), or when it is committed but not yet marked done.
+enum class Moment : std::uint32_t { begin, tick, before_commit, in_commit, end };
+inline constexpr std::size_t moments = 5;
 
 struct Fault {
     Step step = Step::encode;
     FaultKind kind = FaultKind::kill;
     Moment moment = Moment::begin;
-    std::uint32_t ticks = 0;    ///< Moment::tick: index of the tick; a share with fewer ticks fails at its end
+    std::uint32_t ticks = 0;    ///< Moment::tick: index of the tick. A share without the moment fails at its end
     std::uint32_t pass_by = 0;  ///< number of shares of the step to skip
 };
 
@@ -37,6 +39,7 @@ struct FaultPlan {
     std::atomic<std::uint32_t> passed;     ///< number of shares skipped for the next fault
     std::array<Fault, most> faults;
     std::array<std::array<std::atomic<std::uint64_t>, 3>, step_names.size()> happened;
+    std::array<std::atomic<std::uint64_t>, moments> in_scan;  ///< faults that happened in shares of the scan, by moment
 };
 
 inline constexpr const char* plan_variable = "OCTOPAIR_TEST_FAULTS";    // environment variable: the file of the plan

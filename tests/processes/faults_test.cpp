@@ -38,7 +38,7 @@ void PrintTo(const FaultCase& a_case, std::ostream* out) { *out << a_case.name; 
 Fault random_fault(Step step, RandomStream& random) {
     Fault fault{.step = step,
                 .kind = FaultKind(random.below(3)),
-                .moment = Moment(random.below(3)),
+                .moment = Moment(random.below(moments)),
                 .ticks = std::uint32_t(random.below(random.below(2) == 0 ? 2 : 30)),
                 .pass_by = step == Step::scan || step == Step::order ? std::uint32_t(random.below(60)) : 0};
     return fault;
@@ -123,6 +123,24 @@ TEST_P(Faults, ChangeNoPair) {
     expect_accounted(*engine);
     expect_all_kinds(ordered);
     RecordProperty("faults", int(happened()));
+}
+
+/// A worker that is killed before, within or after the commit of a share: no pair is lost or doubled, in any kind of output.
+TEST_P(Faults, AtEachMomentOfACommit) {
+    const FaultCase& a_case = GetParam();
+    const auto engine = make_faulty_engine(a_case.workers);
+    const Asked asked{.how = a_case.how, .order = a_case.order, .windows = a_case.windows};
+    for (const Moment moment : {Moment::before_commit, Moment::in_commit, Moment::end}) {
+        for (const std::uint32_t share : {0u, 1u, 4u}) {
+            const Fault fault{.step = Step::scan, .kind = FaultKind::kill, .moment = moment, .pass_by = share};
+            SCOPED_TRACE("moment " + std::to_string(unsigned(moment)) + ", share " + std::to_string(share));
+            fail_within(*engine, asked, {&fault, 1});
+        }
+    }
+    expect_accounted(*engine);
+    for (const Moment moment : {Moment::before_commit, Moment::in_commit, Moment::end}) {
+        EXPECT_GT(plan_->in_scan.at(std::size_t(moment)).load(), 0u) << unsigned(moment);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -32,13 +32,17 @@ public:
         // Also drops an earlier fault whose pass ended before the fault's moment.
         fault_ = take(step);
         ticks_ = 0;
-        if (fault_ && fault_->moment == Moment::begin) happen();
+        if (fault_ && fault_->moment == Moment::begin) happen(Moment::begin);
     }
     void tick() override {
-        if (fault_ && fault_->moment == Moment::tick && ticks_++ == fault_->ticks) happen();
+        if (fault_ && fault_->moment == Moment::tick && ticks_++ == fault_->ticks) happen(Moment::tick);
+    }
+    void reach(CommitPoint point) override {
+        const Moment moment = point == CommitPoint::before ? Moment::before_commit : Moment::in_commit;
+        if (fault_ && fault_->moment == moment) happen(moment);
     }
     void end() override {
-        if (fault_) happen();
+        if (fault_) happen(Moment::end);
     }
 
 private:
@@ -55,11 +59,12 @@ private:
         }
     }
 
-    void happen() {
+    void happen(Moment moment) {
         const Fault fault = *fault_;
         fault_.reset();
         if (fault.kind == FaultKind::mute) throw std::runtime_error("");
         plan_->happened.at(std::size_t(step_)).at(std::size_t(fault.kind)).fetch_add(1);
+        if (step_ == Step::scan) plan_->in_scan.at(std::size_t(moment)).fetch_add(1);
         switch (fault.kind) {
             case FaultKind::kill:
                 end_by(SIGKILL);

@@ -10,7 +10,7 @@
 #include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_search.hpp"
-#include "engine/threads/writers.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {

@@ -50,7 +50,7 @@ struct RankShare {
 
 class RankPasses final : public ThreadPasses {
 public:
-    using ThreadPasses::ThreadPasses;
+    explicit RankPasses(unsigned threads);
 
     /// Sets the share of the next build(). Borrows `stops` and `share.positions` for all passes over that octree.
     void set_share(RankShare share, StopRelay& stops) {
@@ -65,11 +65,10 @@ public:
     void count_rows(Call& call, const RowBins& bins, std::span<std::uint64_t> counts, double progress);
 
     /// Throws: LinearOctree::Invalid.
-    void build(Call& call, double progress) override;
+    void build(Call& call, double progress);
 
 private:
-    const EntrySource& searched(const Call& call) const override;
-    void scan_into(Call& call, Executor& executor, double progress) override;
+    const EntrySource& searched(const Call& call) const;
 
     RankShare share_;
     StopRelay* stops_ = nullptr;

@@ -149,11 +149,7 @@ std::uint64_t allowed(const std::vector<std::uint64_t>& pieces, unsigned rank, c
 template <typename Give>
 std::uint64_t receive(const detail::Output& output, std::uint64_t allowance, const Give& give) {
     Receiver receiver(output, allowance);
-    try {
-        give(receiver);
-    } catch (const Receiver::LimitReached&) {
-    }
-    receiver.flush();
+    receiver.receive([&] { give(receiver); });
     return receiver.pairs();
 }
 

@@ -99,7 +99,7 @@ private:
     std::shared_ptr<SharedArrays> arrays_ = std::make_shared<SharedArrays>();
     WorkerPool pool_;
     ProcessPasses passes_;
-    Search search_;
+    Search<ProcessPasses> search_;
     detail::JobQueue jobs_{*this};  // last member, so it is destroyed first
 };
 

@@ -3,7 +3,6 @@
 #include "engine/job_queue.hpp"
 #include "engine/search.hpp"
 #include "engine/threads/thread_passes.hpp"
-#include "engine/threads/writers.hpp"
 #include "engine/ticket_lock.hpp"
 
 namespace octopair {
@@ -12,20 +11,21 @@ namespace {
 
 class LocalPasses final : public ThreadPasses {
 public:
-    using ThreadPasses::ThreadPasses;
+    explicit LocalPasses(unsigned threads)
+        : ThreadPasses(threads, [this](Call& call, Executor& executor, double progress) {
+              scan_octants(call, octree(), call.source, executor, progress);
+          }) {}
 
-    void build(Call& call, double progress) override {
-        call.progress.stage(progress, 1);
+    void build(Call& call, double progress) {
         TeamExecutor executor(team());
-        try {
-            octree().build(call.source, executor, call.stop.get_token());
-        } catch (const LinearOctree::Invalid& invalid) {
-            call.source.refuse(invalid.begin);
-        }
+        build_octree(call, progress, [&] {
+            try {
+                octree().build(call.source, executor, call.stop.get_token());
+            } catch (const LinearOctree::Invalid& invalid) {
+                call.source.refuse(invalid.begin);
+            }
+        });
         call.summary.entries = octree().entry_count();
-        call.summary.steps.encode = octree().seconds().encode;
-        call.summary.steps.scatter = octree().seconds().scatter;
-        call.summary.steps.count = octree().seconds().count;
     }
 };
 
@@ -43,7 +43,7 @@ private:
 
     TicketLock ticket_lock_;
     LocalPasses passes_;
-    Search search_{passes_};
+    Search<LocalPasses> search_{passes_};
     detail::JobQueue jobs_{*this};  // last member, so it is destroyed first
 };
 

@@ -11,7 +11,7 @@
 #include "base/stop.hpp"
 #include "boxes/box_source.hpp"
 #include "engine/request.hpp"
-#include "engine/threads/writers.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
 #include "octree/build/linear_octree.hpp"
 

@@ -1,4 +1,4 @@
-// StreamExecutor: helper threads run shares ahead while the calling thread (the lead) delivers pairs in the order of shares.
+// stream_pairs(): helper threads run shares ahead while the calling thread (the lead) delivers pairs in the order of shares.
 //
 // The head is the share whose pairs are delivered next. The lead delivers the ready pairs of the head. If there are none,
 // the lead runs a share itself: straight to the receiver if that share is the head, else into a buffer.
@@ -16,7 +16,8 @@
 
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "engine/threads/writers.hpp"
+#include "engine/output/outputs.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair {
@@ -32,7 +33,7 @@ public:
     OrderedStream(std::size_t count, const Body& body, std::size_t ahead, std::size_t buffer)
         : count_(count), body_(body), buffer_(buffer), slots_(ahead) {}
 
-    void lead(const StreamExecutor::Deliver& deliver) {
+    void lead(const PairSink& deliver) {
         try {
             while (head_ < count_) {
                 if (hand_out(deliver, false)) continue;
@@ -73,9 +74,9 @@ private:
     };
 
     /// Writes a share that the calling thread runs.
-    class LeadWriter final : public FullWriter {
+    class LeadWriter final : public FullOutput {
     public:
-        LeadWriter(OrderedStream& stream, const StreamExecutor::Deliver& deliver, std::size_t share)
+        LeadWriter(OrderedStream& stream, const PairSink& deliver, std::size_t share)
             : stream_(stream), deliver_(deliver), share_(share), held_(stream.lead_held_) {}
         void write(std::span<const Pair> pairs) override {
             if (stream_.head_ == share_) {
@@ -96,12 +97,12 @@ private:
 
     private:
         OrderedStream& stream_;
-        const StreamExecutor::Deliver& deliver_;
+        const PairSink& deliver_;
         std::size_t share_;
         std::vector<Pair>& held_;
     };
 
-    class BufferedWriter final : public FullWriter {
+    class BufferedWriter final : public FullOutput {
     public:
         BufferedWriter(OrderedStream& stream, std::size_t share, std::vector<Pair>& held)
             : stream_(stream), share_(share), held_(held) {}
@@ -149,7 +150,7 @@ private:
 
     /// Delivers the ready pairs of the head. Advances the head if its share is finished. Returns false if nothing is ready
     /// and `wait` is false.
-    bool hand_out(const StreamExecutor::Deliver& deliver, bool wait) {
+    bool hand_out(const PairSink& deliver, bool wait) {
         {
             std::unique_lock lock(mutex_);
             Slot& head_slot = slot(head_);
@@ -187,18 +188,27 @@ private:
     std::exception_ptr failure_;
 };
 
+class StreamExecutor final : public TeamExecutor {
+public:
+    StreamExecutor(Team& team, const StreamTo& to) : TeamExecutor(team), to_(to) {}
+    void for_each_writing(std::size_t count, const Body& body) override {
+        const std::size_t ahead = std::size_t(width()) * tuning().output.shares_ahead;
+        // Each share that runs ahead has two buffers: one being filled, one ready. The calling thread has one more.
+        const std::size_t buffer = std::max<std::size_t>(1, std::size_t(to_.buffer_pairs / (2 * ahead + 1)));
+        OrderedStream stream(count, body, ahead, buffer);
+        stream.on_failure = [&] { to_.abandon.request_stop(); };
+        team().with_helpers([&] { stream.lead(to_.deliver); }, [&] { stream.help(); });
+    }
+
+private:
+    StreamTo to_;
+};
+
 }  // namespace
 
-StreamExecutor::StreamExecutor(Team& team, Deliver deliver, std::uint64_t buffer_pairs, std::stop_source abandon)
-    : TeamExecutor(team), deliver_(std::move(deliver)), buffer_pairs_(buffer_pairs), abandon_(std::move(abandon)) {}
-
-void StreamExecutor::for_each_writing(std::size_t count, const Body& body) {
-    const std::size_t ahead = std::size_t(width()) * tuning().output.shares_ahead;
-    // Each share that runs ahead has two buffers: one being filled, one ready. The calling thread has one more.
-    const std::size_t buffer = std::max<std::size_t>(1, std::size_t(buffer_pairs_ / (2 * ahead + 1)));
-    OrderedStream stream(count, body, ahead, buffer);
-    stream.on_failure = [&] { abandon_.request_stop(); };
-    team().with_helpers([&] { stream.lead(deliver_); }, [&] { stream.help(); });
+void stream_pairs(Team& team, const StreamTo& to, const FindPairs& find) {
+    StreamExecutor executor(team, to);
+    find(executor);
 }
 
 }  // namespace octopair

@@ -1,8 +1,14 @@
-// ThreadPasses: scans a linear octree on the threads of this process.
+// ThreadPasses: scans a linear octree on the threads of this process, into each kind of output.
 #pragma once
 
-#include "base/private_export.hpp"
-#include "engine/passes.hpp"
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <utility>
+
+#include "base/timed.hpp"
+#include "engine/search.hpp"
+#include "engine/threads/team_output.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/scan/scan.hpp"
 #include "octree/scan/scan_memory.hpp"
@@ -10,32 +16,63 @@
 
 namespace octopair {
 
-class OCTOPAIR_PRIVATE_EXPORT ThreadPasses : public Passes {
+class ThreadPasses {
 public:
-    explicit ThreadPasses(unsigned threads) : team_(threads) {}
+    /// Scans once: writes pairs in shares of the executor, and advances the progress to a fraction.
+    using Scan = std::function<void(Call&, Executor&, double progress)>;
+    ThreadPasses(unsigned threads, Scan scan) : team_(threads), scan_(std::move(scan)) {}
 
-    unsigned width() const override { return team_.threads(); }
-    std::uint64_t count(Call& call, double progress) override;
-    void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) override;
-    void list_octal(Call& call, detail::PairStorage& list, double progress) override;
-    void stream_octal(Call& call, const Deliver& deliver, double progress) override;
-    void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) override;
+    unsigned width() const { return team_.threads(); }
+    std::uint64_t count(Call& call, double progress) { return count_pairs(team_, once(call, progress)); }
+    void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
+        count_pairs_by_object(team_, counts, once(call, progress));
+    }
+    void list_octal(Call& call, detail::PairStorage& list, double progress) {
+        list_pairs(team_, list, once(call, progress));
+    }
+    void stream_octal(Call& call, const PairSink& deliver, double progress) {
+        stream_pairs(team_, {deliver, call.buffer_pairs(), call.stop}, once(call, progress));
+    }
+    void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) {
+        const double begin = call.progress.end();
+        const auto begin_sort = [&](std::uint64_t pairs) { call.progress.stage(progress, pairs); };
+        const auto sorted = [&](std::uint64_t pairs) { call.progress.add(pairs); };
+        list_ascending_pairs(team_, list, bounds, once(call, begin + ascending_scan_part * (progress - begin)),
+                             {call.stop.get_token(), begin_sort, sorted});
+    }
+    void end() {}
 
 protected:
     Team& team() { return team_; }
-    /// Returns the octree of the call's objects. Requires: build() was called.
     LinearOctree& octree() { return octree_; }
-    /// Returns the boxes that the octree is built of.
-    virtual const EntrySource& searched(const Call& call) const { return call.source; }
-    /// Scans the whole octree once, and passes its pairs to the writers of `executor`.
-    virtual void scan_into(Call& call, Executor& executor, double progress);
-    /// Scans `octants` once, and passes their pairs to the writers of `executor`.
-    void scan_into(Call& call, const OctreeRange& octants, Executor& executor, double progress);
+
+    /// Builds the octree with `build()`, and sets its times in the summary.
+    template <typename Build>
+    void build_octree(Call& call, double progress, Build&& build) {
+        call.progress.stage(progress, 1);
+        build();
+        call.summary.steps.encode = octree_.seconds().encode;
+        call.summary.steps.scatter = octree_.seconds().scatter;
+        call.summary.steps.count = octree_.seconds().count;
+    }
+    /// Scans `octants` of the octree, which was built of `source`.
+    void scan_octants(Call& call, const OctreeRange& octants, const EntrySource& source, Executor& executor,
+                      double progress) {
+        const Timed timed(call.summary.steps.scan);
+        call.progress.stage(progress, octants.octree.entry_count(octants.begin, octants.end));
+        scan(octants, {source, call.stop.get_token(), scan_memory_}, executor,
+             [&](std::uint64_t entries) { call.progress.add(entries); });
+    }
+
+    FindPairs once(Call& call, double progress) {
+        return [this, &call, progress](Executor& executor) { scan_(call, executor, progress); };
+    }
 
 private:
     Team team_;
     LinearOctree octree_;
     ScanMemoryPool scan_memory_;
+    Scan scan_;
 };
 
 }  // namespace octopair

@@ -34,7 +34,7 @@ struct OctreeRange {
 /// that are handed down into it. Calls `progress`, unless empty, with the number of entries of each finished share, on any
 /// thread of the executor.
 /// Throws: Error{cancelled}.
-void scan(const OctreeRange& octants, const ScanContext& context, Executor& executor,
-          const std::function<void(std::uint64_t)>& progress);
+OCTOPAIR_PRIVATE_EXPORT void scan(const OctreeRange& octants, const ScanContext& context, Executor& executor,
+                                  const std::function<void(std::uint64_t)>& progress);
 
 }  // namespace octopair

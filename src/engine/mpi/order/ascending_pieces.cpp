@@ -8,7 +8,7 @@
 #include "base/tuning.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/partition/even_cuts.hpp"
-#include "engine/threads/ascending.hpp"
+#include "engine/threads/team_output.hpp"
 
 namespace octopair {
 
@@ -99,14 +99,15 @@ void AscendingPieces::sort_received(detail::PairStorage& piece, const ObjectRang
     const std::span<const Pair> all = received_.span();
     AscendingBounds bounds{rows, columns_};
     bounds.expected = all.size();
-    AscendingExecutor executor(team_, piece, bounds);
     const std::size_t share_pairs = tuning().ranks.share_pairs;
-    executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs, [&](std::size_t i, ShareWriter& writer) {
-        throw_if_stopped(stop);
-        const std::size_t begin = i * share_pairs;
-        writer.write(all.subspan(begin, std::min(share_pairs, all.size() - begin)));
-    });
-    executor.append_sorted(stop, on_sorted_);
+    const auto write_received = [&](Executor& executor) {
+        executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs, [&](std::size_t i, ShareWriter& writer) {
+            throw_if_stopped(stop);
+            const std::size_t begin = i * share_pairs;
+            writer.write(all.subspan(begin, std::min(share_pairs, all.size() - begin)));
+        });
+    };
+    list_ascending_pairs(team_, piece, bounds, write_received, {.stop = stop, .sorted = on_sorted_});
 }
 
 }  // namespace octopair

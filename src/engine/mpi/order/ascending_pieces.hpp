@@ -35,6 +35,8 @@ public:
 
     std::size_t size() const { return std::size_t(rows_ >> shift_) + 1; }
     std::size_t bin(const Pair& pair) const { return pair.a >> shift_; }
+    /// Returns the number of low bits of `a` in which the objects of a bin differ.
+    unsigned shift() const { return shift_; }
     /// Returns the first object of a bin, or the number of objects if there is none.
     std::uint64_t begin(std::size_t bin) const {
         const std::uint64_t row = std::uint64_t(bin) << shift_;

@@ -180,7 +180,7 @@ void ProcessPasses::append_runs(detail::PairStorage& list, const std::shared_ptr
     for (const auto run : runs) list.append(keep ? run : list.copy(run));
 }
 
-void ProcessPasses::stream_octal(Call& call, const Deliver& deliver, double progress) {
+void ProcessPasses::stream_octal(Call& call, const PairSink& deliver, double progress) {
     pass_.kind = PassKind::stream_octal;
     const auto pairs = free_pairs();
     const RingSize size = ring_size(call.buffer_pairs(), pass_.workers);

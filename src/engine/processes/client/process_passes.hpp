@@ -5,26 +5,26 @@
 #include <span>
 #include <vector>
 
-#include "engine/passes.hpp"
+#include "engine/search.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
 #include "engine/processes/client/worker_pool.hpp"
 
 namespace octopair {
 
-class ProcessPasses final : public Passes {
+class ProcessPasses {
 public:
     /// Requires: `pool` and `arrays` outlive this object.
     ProcessPasses(WorkerPool& pool, const SharedArrays& arrays);
 
-    unsigned width() const override { return pool_.workers(); }
-    void end() noexcept override { regions_.clear(); }
+    unsigned width() const { return pool_.workers(); }
+    void end() noexcept { regions_.clear(); }
     /// Prepares the inputs. The next pass builds the octree, so workers need only one request for both.
-    void build(Call& call, double progress) override;
-    std::uint64_t count(Call& call, double progress) override;
-    void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) override;
-    void list_octal(Call& call, detail::PairStorage& list, double progress) override;
-    void stream_octal(Call& call, const Deliver& deliver, double progress) override;
-    void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) override;
+    void build(Call& call, double progress);
+    std::uint64_t count(Call& call, double progress);
+    void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress);
+    void list_octal(Call& call, detail::PairStorage& list, double progress);
+    void stream_octal(Call& call, const PairSink& deliver, double progress);
+    void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress);
 
 private:
     /// The work of a pass that has been reported as progress of the call.

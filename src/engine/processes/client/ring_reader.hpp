@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/passes.hpp"
+#include "engine/search.hpp"
 #include "engine/processes/client/worker_pool.hpp"
 
 namespace octopair {
@@ -26,7 +26,7 @@ RingSize ring_size(std::uint64_t pairs, unsigned slots);
 
 class RingReader {
 public:
-    RingReader(WorkerPool& pool, SharedMemory& pairs, const Pass& pass, const Deliver& deliver)
+    RingReader(WorkerPool& pool, SharedMemory& pairs, const Pass& pass, const PairSink& deliver)
         : pool_(pool), pairs_(pairs), pass_(pass), deliver_(deliver) {}
 
     /// Delivers a limited number of the blocks that are ready. Returns true, and raises the client's event, if the limit was
@@ -47,7 +47,7 @@ private:
     WorkerPool& pool_;
     SharedMemory& pairs_;
     const Pass& pass_;
-    const Deliver& deliver_;
+    const PairSink& deliver_;
     std::uint64_t share_ = 0;      // the share to deliver next
     std::uint64_t delivered_ = 0;  // pairs of share_ that have been delivered
     std::uint64_t passed_ = 0;     // pairs of share_ in blocks taken since a worker last began the share

@@ -60,6 +60,7 @@ class ObservedWriter final : public ShareWriter {
 public:
     ObservedWriter(ShareWriter& writer, ShareObserver& observer) : writer_(writer), observer_(observer) {}
     bool counting() const override { return writer_.counting(); }
+    std::span<Pair> room(std::size_t pairs) override { return writer_.room(pairs); }
     void write(std::span<const Pair> pairs) override {
         observer_.tick();
         writer_.write(pairs);
@@ -132,11 +133,12 @@ private:
 /// Divides the steps that write pairs, and the steps that build nested octrees of large octants, among the workers. Each
 /// worker sorts and measures sets of boxes itself. The results depend only on octrees that no longer change, so a
 /// replacement worker computes the same results.
+template <typename Output>
 class PassRunner::ScanExecutor final : public Executor {
 public:
     /// Borrows all arguments. `arena`: pages for nested octrees. The arena is not rewound before the pass ends: a slow or
     /// replacement worker still reads octrees that other workers no longer need.
-    ScanExecutor(WorkSharing& shares, unsigned width, ShareOutput& output, Arena& arena)
+    ScanExecutor(WorkSharing& shares, unsigned width, Output& output, Arena& arena)
         : shares_(shares), width_(width), output_(output), arena_(arena) {}
     unsigned width() const override { return width_; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override {
@@ -144,14 +146,14 @@ public:
     }
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override {
         shares_.run(Step::scan, count, [&](const WorkSharing::ClaimedShare& share) {
-            ShareWriter& writer = output_.begin(share);
+            output_.begin(share);
             if (shares_.observer() != nullptr) {
-                ObservedWriter observed(writer, *shares_.observer());
+                ObservedWriter observed(output_, *shares_.observer());
                 body(std::size_t(share.index), observed);
             } else {
-                body(std::size_t(share.index), writer);
+                body(std::size_t(share.index), output_);
             }
-            output_.end(share);
+            output_.commit(share);
         });
     }
     BuildPlace build_place(std::size_t entries) override {
@@ -170,7 +172,7 @@ private:
 
     WorkSharing& shares_;
     unsigned width_;
-    ShareOutput& output_;
+    Output& output_;
     Arena& arena_;
     std::optional<BuildExecutor> build_;  // builds the current nested octree
 };
@@ -235,27 +237,28 @@ void PassRunner::scan(const Context& context) {
     context.slot.scan_seconds = 0;
     const Timed timed(context.slot.scan_seconds);
     const auto pairs = regions_.get(pass.pairs_region);
-    const OutputPlace place{view_, *pairs, context.shares, context.stop};
+    const WorkerPlace place{view_, *pairs, context.shares, context.stop};
     switch (pass.kind) {
         case PassKind::count:
-            return scan_into(context, *make_count_output());
+            return scan_into(context, CountOutput(place));
         case PassKind::count_by_object:
             return count_by_object(context);
         case PassKind::list_octal:
-            return scan_into(context, *make_list_output(place));
+            return scan_into(context, ListOutput(place));
         case PassKind::stream_octal:
-            return scan_into(context, *make_stream_output(place, pass));
+            return scan_into(context, RingOutput(place, pass));
         case PassKind::list_ascending: {
             SharedBuckets buckets(place, pass);
-            scan_into(context, buckets);
+            scan_into(context, buckets.output());
             return buckets.order(context.shares);
         }
     }
     throw Error(ErrorCode::engine_failed, "control block: the kind of the pass is unknown");
 }
 
-void PassRunner::scan_into(const Context& context, ShareOutput& output) {
-    ScanExecutor executor(context.shares, context.pass.workers, output, job_->arena);
+template <typename Output>
+void PassRunner::scan_into(const Context& context, Output output) {
+    ScanExecutor<Output> executor(context.shares, context.pass.workers, output, job_->arena);
     octopair::scan(job_->octree, {job_->source, context.stop, scan_memory_}, executor,
                    [&](std::uint64_t entries) { context.slot.entries_scanned.fetch_add(entries); });
 }
@@ -270,7 +273,7 @@ void PassRunner::count_by_object(const Context& context) {
         std::fill(counts.data() + begin, counts.data() + end, 0u);
     });
     context.slot.number = job_->arena.offset(counts.data());
-    scan_into(context, *make_count_by_object_output(counts.span()));
+    scan_into(context, RowCountOutput(counts.span()));
 }
 
 }  // namespace octopair

@@ -7,8 +7,8 @@
 
 #include "boxes/box_source.hpp"
 #include "engine/processes/shared_memory/shared_memory.hpp"
-#include "engine/processes/worker/share_output.hpp"
 #include "engine/processes/worker/work_sharing.hpp"
+#include "engine/processes/worker/worker_place.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/scan/scan_memory.hpp"
@@ -30,6 +30,7 @@ public:
 private:
     struct Job;
     class BuildExecutor;
+    template <typename Output>
     class ScanExecutor;
     struct Context {
         const Pass& pass;
@@ -41,7 +42,8 @@ private:
     void start_job(const Pass& pass);
     void build(const Context& context);
     void scan(const Context& context);
-    void scan_into(const Context& context, ShareOutput& output);
+    template <typename Output>
+    void scan_into(const Context& context, Output output);
     void count_by_object(const Context& context);
 
     ControlBlockView& view_;

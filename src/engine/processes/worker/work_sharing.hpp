@@ -16,13 +16,17 @@
 
 namespace octopair {
 
+/// A moment in the commit of a share. After the commit, ShareObserver::end() is called.
+enum class CommitPoint : std::uint8_t { before, within };
+
 /// Receives the progress of a worker. Fault tests use an observer to make a worker fail; octopair-worker has none.
 class ShareObserver {
 public:
     virtual ~ShareObserver() = default;
     virtual void begin(Step step) = 0;
     virtual void tick() = 0;  ///< repeatedly during a share
-    virtual void end() = 0;   ///< the share's work is complete, but the share is not yet marked done
+    virtual void reach(CommitPoint point) = 0;
+    virtual void end() = 0;  ///< the share is committed, but not yet marked done
 };
 
 class WorkSharing {
@@ -51,6 +55,10 @@ public:
     unsigned slot() const { return self_.slot; }
     std::uint32_t pass() const { return self_.pass; }
     ShareObserver* observer() const { return self_.observer; }
+    /// Notifies the observer.
+    void reach(CommitPoint point) const {
+        if (self_.observer != nullptr) self_.observer->reach(point);
+    }
 
 private:
     bool claim(Share& record) const;
