@@ -1,9 +1,14 @@
-// Job: the handle. Each member function forwards to the JobTask that the handle and the queue share.
+// Job: the handle. Each member function forwards to the JobTask that the handle and the queue share. Also the calls of Engine that make jobs.
 #include "octopair/job.hpp"
 
+#include <memory>
+#include <new>
 #include <utility>
 
+#include "base/floating_point_scope.hpp"
+#include "engine/job_queue.hpp"
 #include "engine/job_task.hpp"
+#include "engine/request.hpp"
 
 namespace octopair {
 
@@ -55,6 +60,27 @@ Summary Job::summary() const {
 PairList Job::take_pairs() {
     if (task_ == nullptr) throw_empty();
     return task_->take_pairs();
+}
+
+template <typename Work>
+Job Engine::submit_work(Work work) {
+    const FloatingPointScope scope;
+    check(detail::request_of(detail::view(work.input), work.options));
+    try {
+        const auto task = std::make_shared<detail::JobTask>(std::move(work));
+        jobs().add(task);
+        return detail::make_job(task);
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorCode::resource_limit, "out of memory");
+    }
+}
+
+Job Engine::submit(JobInput input, Options options) {
+    return submit_work(detail::JobTask::Work{std::move(input), {}, std::move(options)});
+}
+
+Job Engine::submit_stream(JobInput input, PairSink sink, Options options) {
+    return submit_work(detail::JobTask::Work{std::move(input), std::move(sink), std::move(options)});
 }
 
 }  // namespace octopair

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/pair_pages.hpp"
+#include "engine/bucket_sort.hpp"
 #include "support/compare.hpp"
 
 namespace octopair::test {

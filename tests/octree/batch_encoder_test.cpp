@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "octree/build/batch_encoder.hpp"
-#include "octree/build/octants_of.hpp"
 #include "octree/build/linear_octree.hpp"
+#include "octree/build/octants_of.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {

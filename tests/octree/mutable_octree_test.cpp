@@ -10,8 +10,8 @@
 #include "boxes/box_source.hpp"
 #include "engine/threads/team_output.hpp"
 #include "octopair/error.hpp"
-#include "octree/dynamic/mutable_octree.hpp"
 #include "octree/build/linear_octree.hpp"
+#include "octree/dynamic/mutable_octree.hpp"
 #include "parallel/team.hpp"
 #include "support/kinds.hpp"
 

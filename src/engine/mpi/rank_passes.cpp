@@ -82,9 +82,8 @@ void RankPasses::build(Call& call, double progress) {
     RankExecutor executor(threads, *stops_);
     positioned_.reset();
     if (share_.positions) positioned_.emplace(call.source, *share_.positions);
-    build_octree(call, progress, [&] {
-        octree().build(std::move(share_.layout), searched(call), executor, call.stop.get_token());
-    });
+    build_octree(call, progress,
+                 [&] { octree().build(std::move(share_.layout), searched(call), executor, call.stop.get_token()); });
     call.summary.entries = octree().entry_count(share_.begin, share_.end);
 }
 

@@ -12,8 +12,8 @@
 #include "engine/mpi/order/ascending_pieces.hpp"
 #include "engine/mpi/positioned_source.hpp"
 #include "engine/threads/thread_passes.hpp"
-#include "octree/executor.hpp"
 #include "octree/build/linear_octree.hpp"
+#include "octree/executor.hpp"
 
 namespace octopair {
 

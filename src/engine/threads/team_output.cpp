@@ -97,15 +97,16 @@ void count_pairs_by_object(Team& team, std::span<std::uint32_t> counts, const Fi
 }
 
 void count_pairs_by_bin(Team& team, std::span<std::uint64_t> counts, unsigned bin_shift, const FindPairs& find) {
-    OutputExecutor<RowCountOutput<std::uint64_t>> executor(
-        team, [&](unsigned) { return RowCountOutput(counts, bin_shift); });
+    OutputExecutor<RowCountOutput<std::uint64_t>> executor(team,
+                                                           [&](unsigned) { return RowCountOutput(counts, bin_shift); });
     find(executor);
 }
 
 void list_pairs(Team& team, detail::PairStorage& list, const FindPairs& find) {
     std::vector<std::vector<CommittedRun>> of_thread(team.threads());
-    OutputExecutor<ListOutput<ListPlace>> executor(
-        team, [&](unsigned thread) { return ListOutput(ListPlace{list, of_thread[thread]}); });
+    OutputExecutor<ListOutput<ListPlace>> executor(team, [&](unsigned thread) {
+        return ListOutput(ListPlace{list, of_thread[thread]});
+    });
     find(executor);
     std::vector<CommittedRun> all;
     for (const auto& runs : of_thread) all.insert(all.end(), runs.begin(), runs.end());

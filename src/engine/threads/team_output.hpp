@@ -47,7 +47,7 @@ OCTOPAIR_PRIVATE_EXPORT void count_pairs_by_bin(Team& team, std::span<std::uint6
 OCTOPAIR_PRIVATE_EXPORT void list_pairs(Team& team, detail::PairStorage& list, const FindPairs& find);
 
 struct StreamTo {
-    const PairSink& deliver;    ///< receives pairs on the calling thread
+    const PairSink& deliver;     ///< receives pairs on the calling thread
     std::uint64_t buffer_pairs;  ///< maximum number of buffered pairs
     std::stop_source abandon;    ///< stop requested when a share or `deliver` fails, so that the other shares end soon
 };
@@ -57,8 +57,10 @@ OCTOPAIR_PRIVATE_EXPORT void stream_pairs(Team& team, const StreamTo& to, const 
 /// Control of the sort of list_ascending_pairs(). The functions may be empty.
 struct SortControl {
     std::stop_token stop = {};
-    std::function<void(std::uint64_t)> begin = {};   ///< called with the number of pairs that were found, before they are sorted
-    std::function<void(std::uint64_t)> sorted = {};  ///< called with the number of pairs of each bucket, on any thread of the team
+    std::function<void(std::uint64_t)> begin =
+        {};  ///< called with the number of pairs that were found, before they are sorted
+    std::function<void(std::uint64_t)> sorted =
+        {};  ///< called with the number of pairs of each bucket, on any thread of the team
 };
 /// Appends the pairs within `bounds` to a list, in ascending order. Scatters pairs into buckets, in pages of the list's own memory, and sorts
 /// each bucket into pages of the same memory. Beside the pairs, sorting needs memory for one bucket for each thread.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/timed.hpp"
-#include "engine/search.hpp"
+#include "engine/passes.hpp"
 #include "engine/threads/team_output.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/scan/scan.hpp"

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "octree/plan/octant_cells.hpp"
-#include "octree/plan/directory.hpp"
 #include "octree/build/box_locator.hpp"
+#include "octree/plan/directory.hpp"
+#include "octree/plan/octant_cells.hpp"
 #include "octree/plan/space.hpp"
 
 namespace octopair {

@@ -19,8 +19,8 @@
 #include "base/memory.hpp"
 #include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
-#include "octree/plan/directory.hpp"
 #include "octree/build/chunk_lists.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/plan/space.hpp"
 
 namespace octopair {

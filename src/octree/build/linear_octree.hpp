@@ -22,9 +22,9 @@
 #include "base/memory.hpp"
 #include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
-#include "octree/plan/directory.hpp"
 #include "octree/build/build_steps.hpp"
 #include "octree/executor.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/plan/sample.hpp"
 #include "octree/plan/space.hpp"
 

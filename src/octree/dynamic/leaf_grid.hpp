@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <span>
 
-#include "octree/plan/directory.hpp"
 #include "octree/dynamic/small_block.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/plan/space.hpp"
 
 namespace octopair {

@@ -23,10 +23,10 @@
 #include <vector>
 
 #include "octopair/objects.hpp"
-#include "octree/plan/directory.hpp"
 #include "octree/dynamic/leaf_grid.hpp"
 #include "octree/dynamic/small_block.hpp"
 #include "octree/dynamic/unit_blocks.hpp"
+#include "octree/plan/directory.hpp"
 #include "octree/plan/space.hpp"
 
 namespace octopair {

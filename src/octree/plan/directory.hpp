@@ -15,8 +15,8 @@
 
 #include "base/private_export.hpp"
 #include "base/test_hooks.hpp"
-#include "octree/plan/split_rule.hpp"
 #include "octree/plan/space.hpp"
+#include "octree/plan/split_rule.hpp"
 
 namespace octopair {
 

@@ -51,7 +51,8 @@ std::size_t CellPairMaker::drop_refused(JudgedHits& judged) {
     count_path(Path::cell_hit_doubtful);
     const std::span<const Pair> pairs{judged.pairs, judged.pair_count};
     const std::span<const std::uint32_t> doubtful{judged.doubtful, judged.doubtful_count};
-    const auto refused = memory_.refused.span().first(context_.source.refused({pairs, doubtful}, memory_.refused.data()));
+    const auto refused =
+        memory_.refused.span().first(context_.source.refused({pairs, doubtful}, memory_.refused.data()));
     if (refused.empty()) return pairs.size();
     count_path(Path::cell_hit_refused);
     Pair* at = judged.pairs + refused.front();

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "base/memory.hpp"
-#include "octree/sweep/cell_sweep.hpp"
 #include "octree/executor.hpp"
+#include "octree/sweep/cell_sweep.hpp"
 #include "octree/sweep/pair_maker.hpp"
 
 namespace octopair {

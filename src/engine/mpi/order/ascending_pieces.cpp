@@ -101,11 +101,12 @@ void AscendingPieces::sort_received(detail::PairStorage& piece, const ObjectRang
     bounds.expected = all.size();
     const std::size_t share_pairs = tuning().ranks.share_pairs;
     const auto write_received = [&](Executor& executor) {
-        executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs, [&](std::size_t i, ShareWriter& writer) {
-            throw_if_stopped(stop);
-            const std::size_t begin = i * share_pairs;
-            writer.write(all.subspan(begin, std::min(share_pairs, all.size() - begin)));
-        });
+        executor.for_each_writing((all.size() + share_pairs - 1) / share_pairs,
+                                  [&](std::size_t i, ShareWriter& writer) {
+                                      throw_if_stopped(stop);
+                                      const std::size_t begin = i * share_pairs;
+                                      writer.write(all.subspan(begin, std::min(share_pairs, all.size() - begin)));
+                                  });
     };
     list_ascending_pairs(team_, piece, bounds, write_received, {.stop = stop, .sorted = on_sorted_});
 }

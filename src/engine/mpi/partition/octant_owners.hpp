@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "engine/mpi/partition/shared_top.hpp"
-#include "octree/plan/directory.hpp"
 #include "octree/build/octants_of.hpp"
+#include "octree/plan/directory.hpp"
 
 namespace octopair {
 

@@ -26,8 +26,8 @@
 #include "engine/mpi/partition/octant_owners.hpp"
 #include "octree/build/box_locator.hpp"
 #include "octree/build/build_steps.hpp"
-#include "octree/executor.hpp"
 #include "octree/build/linear_octree.hpp"
+#include "octree/executor.hpp"
 
 namespace octopair {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/search.hpp"
+#include "engine/passes.hpp"
 #include "engine/processes/client/shared_inputs.hpp"
 #include "engine/processes/client/worker_pool.hpp"
 

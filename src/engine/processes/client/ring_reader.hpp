@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/search.hpp"
+#include "engine/passes.hpp"
 #include "engine/processes/client/worker_pool.hpp"
 
 namespace octopair {

@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/search.hpp"
+#include "engine/passes.hpp"
 #include "engine/processes/client/worker_pool.hpp"
 
 namespace octopair {

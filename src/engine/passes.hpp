@@ -1,0 +1,59 @@
+// Passes: what an engine does for a Search (search.hpp): builds the octree of a call, and scans it into outputs.
+// Start here to add a new engine: write a class with these functions, and a class derived from Engine (octopair/engine.hpp) that owns it,
+// a Search, a TicketLock and a JobQueue. The smallest one is in threads/local_engine.cpp.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <stop_token>
+
+#include "base/tuning.hpp"
+#include "boxes/box_source.hpp"
+#include "engine/bucket_sort.hpp"
+#include "engine/pair_list.hpp"
+#include "engine/progress.hpp"
+#include "engine/request.hpp"
+
+namespace octopair {
+
+/// State of one call, apart from the engine's own memory.
+struct Call {
+    const detail::Request& request;
+    const detail::Output& output;
+    const BoxSource& source;
+    std::stop_source stop;  ///< requested by the caller, or when a pass fails or is abandoned
+    Progress& progress;
+    Summary summary;
+
+    /// Returns `Options::buffer_bytes` in pairs, but at least the minimum in tuning.hpp.
+    std::uint64_t buffer_pairs() const {
+        return std::max(request.options.buffer_bytes, tuning().output.min_buffer_bytes) / sizeof(Pair);
+    }
+};
+
+/// What an engine does for a Search. build() comes first, then scans. Each scan adds its times to the summary and advances the progress to
+/// the fraction `progress`. Lists are empty before, counts are 0.
+///   width()            number of threads or workers that share a scan
+///   build              builds the octree of the call's objects
+///   count              returns the number of pairs
+///   count_by_object    adds the number of pairs with object i as `a` to counts[i]
+///   list_octal         appends all pairs in octal order
+///   stream_octal       passes all pairs to `deliver` in octal order, and buffers at most call.buffer_pairs(). What `deliver` throws ends it
+///   list_ascending     appends the pairs within `bounds` in ascending order. Throws OverBudget if the pairs exceed `bounds.max_pairs`
+///   end                ends the call: frees references to the caller's data
+template <typename T>
+concept Passes = requires(T passes, Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
+                          std::span<std::uint32_t> counts, const PairSink& deliver, double progress) {
+    { passes.width() } -> std::same_as<unsigned>;
+    passes.build(call, progress);
+    { passes.count(call, progress) } -> std::same_as<std::uint64_t>;
+    passes.count_by_object(call, counts, progress);
+    passes.list_octal(call, list, progress);
+    passes.stream_octal(call, deliver, progress);
+    passes.list_ascending(call, list, bounds, progress);
+    passes.end();
+};
+
+}  // namespace octopair
