@@ -151,7 +151,7 @@ TEST(CellSweep, CallsTakeABoundedNumberOfRows) {
 TEST(CellSweep, FindsEachPairOnce) {
     std::mt19937 random(3);
     const auto overlap = [](const CellEntry& a, const CellEntry& b) {
-        bool overlaps = !share_flag(a, b);
+        bool overlaps = reports(a, b);
         for (unsigned k = 0; k < 3; ++k) overlaps &= a.low(k) <= b.high(k) && b.low(k) <= a.high(k);
         return overlaps;
     };

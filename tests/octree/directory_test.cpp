@@ -1,6 +1,5 @@
 // Tests Directory: octants computed from split flags, and the leaf of each cell.
 #include "octree/plan/directory.hpp"
-#include "octree/reporting_octant.hpp"
 
 #include <gtest/gtest.h>
 
@@ -101,7 +100,7 @@ TEST(Directory, AnOctantTouchesABoxThatReachesItsFirstOrLastCell) {
     const std::uint32_t half = cells_per_axis / 2;
     EXPECT_TRUE(octant.touches({{0, 0, 0, 0}, {half, half, half, 0}}));
     EXPECT_FALSE(octant.touches({{0, 0, 0, 0}, {half, half, half - 1, 0}}));
-    EXPECT_EQ(class_bits({{half, half - 1, half, 0}, {half, half, half, 0}}, octant), 2u);
+    EXPECT_EQ(class_bits(CellBox{{half, half - 1, half, 0}, {half, half, half, 0}}, octant), 2u);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 // - The octree is the same for any distribution of the work.
 
 #include "octree/build/linear_octree.hpp"
-#include "octree/reporting_octant.hpp"
 
 #include <gtest/gtest.h>
 

@@ -42,12 +42,6 @@ private:
     std::array<double, 4> origin_ = {0, 0, 0, 0};
 };
 
-/// True if the box begins in the octant of the entry. Requires: an entry of an octree that is not nested.
-bool begins_here(const CellEntry& entry) {
-    constexpr std::uint32_t class_bit = 1u << 15;
-    return ((entry.ends[0] | entry.ends[1] | entry.ends[2]) & class_bit) == 0;
-}
-
 /// Copies an octree to lists, octant by octant.
 class OctantCopier {
 public:
@@ -89,7 +83,7 @@ private:
         std::uint32_t* out = begin;
         octree_.for_each_run(octant, [&](std::span<const CellEntry> run) {
             for (const CellEntry& entry : run) {
-                if (!begins_here(entry)) continue;
+                if (!has_no_class_bit(entry)) continue;
                 *out = number(entry.object);
                 lists_.homes[*out++] = octant;
             }
@@ -98,7 +92,7 @@ private:
         if (homes == octree_.entry_count(octant)) return homes;
         octree_.for_each_run(octant, [&](std::span<const CellEntry> run) {
             for (const CellEntry& entry : run) {
-                if (!begins_here(entry)) *out++ = number(entry.object);
+                if (!has_no_class_bit(entry)) *out++ = number(entry.object);
             }
         });
         return homes;

@@ -88,7 +88,8 @@ HWY_INLINE void home_entries(const BatchEncoder& encoder, const Loaded& box, con
         const auto one = hn::Set(d, 1u);
         const auto class_bit = hn::And(hn::ShiftRightSame(box.mask, int(encoder.axes[k])), one);
         const auto set_bit = hn::And(hn::ShiftRightSame(box.mask, int(3 + k)), one);
-        words[k] = hn::Or(words[k], hn::Or(hn::ShiftLeft<15>(class_bit), hn::ShiftLeft<31>(set_bit)));
+        words[k] = hn::Or(words[k], hn::Or(hn::ShiftLeft<int(CellEntry::class_shift)>(class_bit),
+                                           hn::ShiftLeft<int(CellEntry::set_shift)>(set_bit)));
     }
     words[3] = box.object;
 }
@@ -170,9 +171,10 @@ HWY_INLINE void ghosts_of_lanes(const GhostSource& source, CrosserRange crossers
         Lanes words[4];
         for (unsigned k = 0; k < 3; ++k) {
             const unsigned axis = encoder.axes[k];
-            if (corner >> axis & 1u) {  // the octant holds the high end
+            if (corner >> axis & 1u) {  // the octant holds the high end, so the box begins before the octant
                 has &= bits_of(d, hn::Lt(low[axis], hn::AndNot(in_corner, high[axis])));
-                words[k] = hn::Or(hn::Set(d, 1u << 15), hn::ShiftLeft<16>(octant_cells(high[axis], corner_level)));
+                words[k] =
+                    hn::Or(hn::Set(d, CellEntry::class_bit), hn::ShiftLeft<16>(octant_cells(high[axis], corner_level)));
             } else {
                 const auto last = hn::Min(high[axis], hn::Or(low[axis], in_corner));
                 words[k] =

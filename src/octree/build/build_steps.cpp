@@ -111,18 +111,17 @@ private:
             if (octant == home_octant) return;
             const OctantCells cells(steps_.space, steps_.directory.octants()[octant]);
             Entry ghost = whole;
-            ghost.mask |= begins;  // adds class bits to those of octrees around this one (octree/reporting_octant.hpp)
+            ghost.mask |= begins;  // adds class bits to those of octrees around this one (boxes/entry.hpp)
             append_ghost(std::uint32_t(steps_.memory.ghost_list(octant)), cells.entry(ghost), home);
         });
     }
 
     void append_ghost(std::uint32_t list, CellEntry ghost, [[maybe_unused]] const CellEntry& home) {
         if constexpr (has_test_hooks) {
-            constexpr std::uint32_t class_bit = 1u << 15;
             for (unsigned k = 0; k < 3; ++k) {
-                if ((home.ends[k] & class_bit) == 0) continue;
+                if ((home.ends[k] & CellEntry::class_bit) == 0) continue;
                 count_path(Path::class_bits_brought);
-                if (planted(Fault::begins_bit_cleared)) ghost.ends[k] &= ~class_bit;
+                if (planted(Fault::begins_bit_cleared)) ghost.ends[k] &= ~CellEntry::class_bit;
             }
         }
         writer_.append(list, ghost);

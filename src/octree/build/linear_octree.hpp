@@ -5,7 +5,7 @@
 //   than eight smaller octants, octants of its natural level. An entry there stands for all octants below.
 //   entries(octant) lists first the boxes that have their home there: the leaf that they begin in. Ghosts follow: boxes
 //   that reach into the octant from elsewhere or are too large for a leaf. Both parts ascend by object.
-//   Class bits are set as reporting_octant.hpp says.
+//   Class bits are set as boxes/entry.hpp says.
 //   The octree is a function of the source alone. Blocks of objects are only shares of the work.
 //
 // A build takes space and directory from a sample, and then runs the steps of build_steps.hpp with an executor.

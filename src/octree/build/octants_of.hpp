@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "octree/plan/directory.hpp"
-#include "octree/reporting_octant.hpp"
 
 namespace octopair {
 

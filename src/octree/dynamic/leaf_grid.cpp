@@ -9,7 +9,8 @@ namespace octopair {
 
 namespace {
 
-constexpr float small_numbers = 254;  // a SmallBox has 8-bit numbers: 0 means before the unit, 255 covers rounding
+// A SmallBox has 8-bit numbers: 0 means before the unit (SmallBox::class_bits()), 255 covers rounding.
+constexpr float small_numbers = 254;
 
 }  // namespace
 

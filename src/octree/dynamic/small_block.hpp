@@ -2,13 +2,15 @@
 //
 // Invariants
 //   All numbers are rounded down by one monotone map, so boxes that overlap in the space overlap here.
-//   A low end is 0 if the box begins before the unit, otherwise greater. So two boxes are reported only in the unit that
-//   holds the low corner of their intersection.
+//   A low end is 0 if the box begins before the unit, otherwise greater. So class bits need no memory (SmallBox::class_bits()), and
+//   two boxes are reported only in the unit that holds the low corner of their intersection (boxes/entry.hpp).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+
+#include "boxes/entry.hpp"
 
 namespace octopair {
 
@@ -22,6 +24,10 @@ struct SmallBox {
     }
     std::uint8_t lo(unsigned axis) const { return std::uint8_t(lo_bytes >> (8 * axis)); }
     std::uint8_t hi(unsigned axis) const { return std::uint8_t(hi_bytes >> (8 * axis)); }
+    /// Returns the axes, as class bits, on which the box begins before the unit.
+    std::uint32_t class_bits() const {
+        return std::uint32_t(lo(0) == 0) | std::uint32_t(lo(1) == 0) << 1 | std::uint32_t(lo(2) == 0) << 2;
+    }
 };
 
 /// Two cache lines of entries.
@@ -44,9 +50,8 @@ static_assert(sizeof(SmallBlock) == 128);
 inline bool overlap(const SmallBox& a, const SmallBox& b) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         if (a.lo(axis) > b.hi(axis) || b.lo(axis) > a.hi(axis)) return false;
-        if ((a.lo(axis) | b.lo(axis)) == 0) return false;
     }
-    return true;
+    return reports(a.class_bits(), b.class_bits());
 }
 
 /// Returns a bit mask of the entries of `block` that overlap `wanted`.

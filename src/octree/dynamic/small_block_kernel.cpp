@@ -27,7 +27,8 @@ std::uint32_t overlapping_simd(const SmallBlock& block, const SmallBox& wanted) 
     const auto at_most = [&](auto a, auto b) { return hn::Eq(hn::Min(a, b), a); };
     auto hits = hn::FirstN(d, block.count);
     for (unsigned axis = 0; axis < 3; ++axis) {
-        // Low ends count from 0, but from 1 if the wanted box begins before the unit: at most one of two boxes may do so.
+        // Low ends count from 0, but from 1 if the wanted box begins before the unit: at most one of two boxes may do so
+        // (reports()).
         const std::uint8_t first = wanted.lo(axis) == 0 ? 1 : 0;
         const auto lo = hn::Sub(hn::LoadU(d, block.lo[axis].data()), hn::Set(d, first));
         const auto hi = hn::LoadU(d, block.hi[axis].data());

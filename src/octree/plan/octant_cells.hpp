@@ -1,10 +1,9 @@
-// CellEntry: an entry in 16 bytes, with its bounds in cells of its octant.
+// OctantCells: the map from coordinates to the cells of one octant.
 //
 // Invariants
-//   An octant has 2^15 cells on each axis. OctantCells::cell() maps coordinates to them. It is monotone, and the same for all
-//   entries of the octant. So if one cell is less than another, the same holds for the coordinates.
+//   The map is monotone, and the same for all entries of the octant. So if one cell is less than another, the same holds for the
+//   coordinates.
 //   Coordinates before or behind the octant get its first or last cell.
-//   The flags are the bits of Entry::mask. Two entries are a pair only if they share no flag.
 #pragma once
 
 #include <algorithm>
@@ -17,27 +16,6 @@
 #include "octree/plan/space.hpp"
 
 namespace octopair {
-
-inline constexpr unsigned cell_bits = 15;
-inline constexpr std::uint32_t last_octant_cell = (1u << cell_bits) - 1;
-
-struct alignas(16) CellEntry {
-    /// By axis of the sweep: bits 0 to 14 the cell of the low end, bits 16 to 30 the cell of the high end, bits 15 and 31
-    /// flags. Bit 15: class bit of this axis. Bit 31: first_set, second_set or fixed_object, one on each axis.
-    std::array<std::uint32_t, 3> ends;
-    std::uint32_t object;
-
-    static constexpr std::uint32_t flag_bits = 0x80008000;
-    static constexpr std::uint32_t end_bits = ~flag_bits;
-
-    std::uint32_t low(unsigned k) const { return ends[k] & last_octant_cell; }
-    std::uint32_t high(unsigned k) const { return ends[k] >> 16 & last_octant_cell; }
-    /// True if the entries share a flag, so that they are no pair of this octant.
-    friend bool share_flag(const CellEntry& a, const CellEntry& b) {
-        return (((a.ends[0] & b.ends[0]) | (a.ends[1] & b.ends[1]) | (a.ends[2] & b.ends[2])) & flag_bits) != 0;
-    }
-};
-static_assert(sizeof(CellEntry) == 16);
 
 /// Map from coordinates to the cells of one octant. The first axis is the long axis of the space.
 /// Specification of cell_entries() (cell_sweep.hpp) and of BatchEncoder (octree/build/batch_encoder.hpp).
@@ -100,13 +78,14 @@ struct OctantCells {
     }
     /// Returns the flags of ends[k] for a mask of boxes/entry.hpp.
     std::uint32_t flags_of(std::uint32_t mask, unsigned k) const {
-        return (mask >> axes[k] & 1u) << 15 | (mask >> (3 + k) & 1u) << 31;
+        return (mask >> axes[k] & 1u) << CellEntry::class_shift | (mask >> (3 + k) & 1u) << CellEntry::set_shift;
     }
     /// Returns the mask that the flags of an entry stand for.
     std::uint32_t mask_of(const CellEntry& entry) const {
         std::uint32_t mask = 0;
         for (unsigned k = 0; k < 3; ++k) {
-            mask |= (entry.ends[k] >> 15 & 1u) << axes[k] | (entry.ends[k] >> 31) << (3 + k);
+            mask |= (entry.ends[k] >> CellEntry::class_shift & 1u) << axes[k];
+            mask |= entry.ends[k] >> CellEntry::set_shift << (3 + k);
         }
         return mask;
     }

@@ -10,7 +10,6 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "octree/reporting_octant.hpp"
 #include "octree/scan/scan_memory.hpp"
 #include "octree/sweep/recursive_sweep.hpp"
 
@@ -105,7 +104,7 @@ private:
         const Octant& octant = octree_.octants()[to];
         if (octant.touches(box) == planted(Fault::handed_to_wrong_child)) return;
         count_path(Path::handed_down);
-        // Class bits are added, never cleared (octree/reporting_octant.hpp).
+        // Class bits are added, never cleared (boxes/entry.hpp).
         Entry& handed = lists_[octant.level].emplace_back(entry);
         handed.mask |= class_bits(box, octant);
     }

@@ -4,7 +4,7 @@
 //   An octant's own entries are swept against each other and against the entries handed down to the octant. An entry that
 //   is handed down touches the octant, but an octant above keeps it, because it is too large for smaller octants.
 //   Two entries are compared only if they are in one octant, or if the octant of one entry is inside the octant of the other.
-//   The masks of two entries decide which octant reports them as a pair (reporting_octant.hpp).
+//   The masks of two entries decide which octant reports them as a pair (boxes/entry.hpp).
 //
 // If a sweep of an octant would cost too much, the octant's entries become a nested linear octree with a space of its own.
 // If nesting would not give smaller octants, recursive_sweep.hpp is used. Both decisions are functions of the entries alone.

@@ -71,7 +71,7 @@ void judge_hits_scalar(const CellSweep& sweep, std::span<CellHit> hits, const Ce
     for (const CellHit hit : hits) {
         const CellEntry& row = sweep.rows.entries()[hit >> 16];
         const CellEntry& column = sweep.columns.entries()[hit & 0xFFFFu];
-        bool apart = share_flag(row, column), certain = !gaps.none_certain;
+        bool apart = !reports(row, column), certain = !gaps.none_certain;
         for (unsigned k = 0; k < 3; ++k) {
             const int depth = std::min(int(row.high(k)) - int(column.low(k)), int(column.high(k)) - int(row.low(k)));
             apart |= depth < 0;

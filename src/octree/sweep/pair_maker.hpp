@@ -7,14 +7,11 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <stop_token>
 
 #include "base/tuning.hpp"
-#include "boxes/entry_source.hpp"
 #include "octree/executor.hpp"
-#include "octree/reporting_octant.hpp"
+#include "octree/sweep/scan_context.hpp"
 #include "octree/sweep/sweep.hpp"
 
 namespace octopair {
@@ -27,18 +24,6 @@ inline Orientation reversed(Orientation orientation) {
     for (auto& sign : orientation) sign = std::int8_t(-sign);
     return orientation;
 }
-
-class ScanMemoryPool;
-
-/// Parameters of a scan, the same for all shares.
-struct ScanContext {
-    const EntrySource& source;
-    std::stop_token stop;
-    ScanMemoryPool& memory;  ///< lends memory to each share
-    unsigned nesting = 0;    ///< number of octrees around the scanned one
-    double growth = 1;       ///< product over all nestings of (entries of the nested octree / entries before it)
-    std::optional<OutermostOctant> outermost = {};  ///< set only with test hooks
-};
 
 class PairMaker {
 public:

@@ -15,7 +15,7 @@ bool hit(const Sweep& sweep, std::size_t row, std::size_t column) {
     if (kind == SweepKind::self && column <= row) return false;
     if (kind == SweepKind::cross && !(columns.low(0)[column] >= rows.low(0)[row])) return false;
     if (kind == SweepKind::cross_strict && !(columns.low(0)[column] > rows.low(0)[row])) return false;
-    bool hits = columns.low(0)[column] <= rows.high(0)[row] && (rows.mask()[row] & columns.mask()[column]) == 0;
+    bool hits = columns.low(0)[column] <= rows.high(0)[row] && reports(rows.mask()[row], columns.mask()[column]);
     for (unsigned axis = 1; axis < 3; ++axis) {
         hits &= rows.low(axis)[row] <= columns.high(axis)[column] && columns.low(axis)[column] <= rows.high(axis)[row];
     }
