@@ -19,10 +19,10 @@ namespace octopair {
 /// All paths through the algorithm, grouped by the source file that chooses the path. A test of tiny scenes takes each path.
 // clang-format off
 #define OCTOPAIR_PATHS(path) \
-    /* octree/plan/split_rule.cpp, octree/plan/directory.cpp */ \
+    /* octree/plan/octree_plan.cpp, octree/plan/directory.cpp */ \
     path(octant_divided) path(octant_too_small) path(octant_well_swept) path(octant_multiplies) path(octant_deepest) \
     path(table_further) \
-    /* octree/build/linear_octree.cpp, octree/build/build_steps.cpp */ \
+    /* octree/build/linear_octree.cpp */ \
     path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) \
     path(ghost_entries) path(ghosts_by_rule) path(refilled) path(class_bits_brought) \
     /* octree/scan/scan.cpp */ \

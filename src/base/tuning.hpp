@@ -27,7 +27,7 @@ namespace octopair {
 enum class StepChoice : std::uint8_t { measured, full, incremental };
 
 struct Tuning {
-    /// How objects are sampled when the octree is planned (octree/build/linear_octree.cpp, octree/plan/space.cpp).
+    /// How objects are sampled when the octree is planned (octree/plan/octree_plan.cpp, octree/plan/space.cpp).
     struct Sampling {
         std::size_t stride = 64;            ///< one object in this many is sampled, within the limits below
         std::size_t min_objects = 16;       ///< minimum number of sampled objects, unless the call has fewer objects
@@ -36,7 +36,7 @@ struct Tuning {
         std::size_t space_objects = 1024;   ///< maximum number of sampled objects whose quantiles give the space
     } sampling;
 
-    /// When an octant is split (octree/plan/split_rule.cpp). Numbers of objects, unless a comment says otherwise.
+    /// When an octant is split (octree/plan/octree_plan.cpp). Numbers of objects, unless a comment says otherwise.
     struct Split {
         double always_above = 4096;              ///< an octant with more objects is split: their sweep misses the cache
         double never_up_to = 1024;               ///< an octant with at most this many stays whole; <= `always_above`
@@ -46,7 +46,7 @@ struct Tuning {
         std::uint64_t max_cells_per_octant = 4;  ///< maximum size of the table from cells to leaves
     } split;
 
-    /// How the steps of a build are divided into shares (octree/build/linear_octree.cpp, octree/build/build_steps.cpp).
+    /// How the steps of a build are divided into shares (octree/build/linear_octree.cpp).
     struct Build {
         std::size_t blocks_per_thread = 2;       ///< blocks of objects; each block counts the entries of every octant
         std::size_t min_block = 2048;            ///< minimum number of objects per block
@@ -56,7 +56,7 @@ struct Tuning {
         std::size_t chunk_part = 4;  ///< chunks shrink until at most one entry in this many can be unused; at least 1
     } build;
 
-    /// Builds whose lists and tables exceed the caches and the TLB (octree/build/staged_writer.cpp, octree/build/batch_encoder.cpp).
+    /// Builds whose lists and tables exceed the caches and the TLB (octree/build/chunk_lists.cpp, octree/build/encoder_kernel.cpp).
     struct Large {
         std::size_t min_lists = 1 << 15;       ///< entries of at least this many lists are scattered in two passes
         std::size_t max_groups = 512;          ///< maximum number of groups of lists that the first pass scatters to

@@ -5,7 +5,7 @@
 //
 // The slots of a row are a cache line. Rows are sorted and written in groups of 16.
 //
-// sort_group_scalar() is the specification of the SIMD version (slotted_rows_kernel.cpp).
+// sort_group_scalar() is the specification of the SIMD version.
 #pragma once
 
 #include <array>

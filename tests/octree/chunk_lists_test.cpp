@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "octopair/error.hpp"
-#include "octree/build/staged_writer.hpp"
 
 namespace octopair::test {
 namespace {
@@ -32,7 +31,7 @@ std::vector<Appended> random_entries(std::size_t count, std::uint32_t lists, dou
     return all;
 }
 
-/// Appends entries to each block, in batches as BuildSteps does.
+/// Appends entries to each block, in batches as LinearOctree does.
 template <typename Writer>
 void append(ChunkLists& lists, std::size_t blocks, std::span<const Appended> all) {
     for (std::size_t block = 0; block < blocks; ++block) {

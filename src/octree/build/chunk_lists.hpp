@@ -3,7 +3,7 @@
 // One pass over the objects appends entries to the lists, without knowing their lengths. A reader visits the lists of an octant
 // in the order of blocks, so it sees the same entries for any number of blocks.
 //
-// ChunkWriter appends the entries of one block.
+// ChunkWriter appends the entries of one block. StagedWriter does the same for very many lists, in two passes.
 //
 // Invariants
 //   A chunk has room for `chunk_size` entries, a power of two, and belongs to one list. next_ links the chunks of a list, in
@@ -12,12 +12,14 @@
 //   Chunk 0 of a block belongs to no list: list number `lists` discards entries there. So position 0 means an empty list.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
 #include "base/memory.hpp"
-#include "octree/plan/octant_cells.hpp"
+#include "boxes/entry.hpp"
 
 namespace octopair {
 
@@ -114,6 +116,63 @@ private:
     std::vector<std::uint32_t> heads_, firsts_;  // by list: position after its last entry; its first chunk
     std::uint32_t chunks_ = 1;
     std::size_t committed_ = 0;  // chunks
+};
+
+/// Appends the entries of one block of objects to very many lists.
+///
+/// A ChunkWriter writes each entry to the end of its list. If there are more lists than the caches and the TLB hold the ends of,
+/// almost each write waits for memory. A StagedWriter distributes entries in two passes, as an MSD radix sort does: first to
+/// groups of adjacent lists, then group by group to the lists. Each pass writes to a few hundred places. The entries of a list stay in
+/// the order in which they are appended. The stage has a fixed size. When it is nearly full, all its entries go to their lists.
+///
+/// Source: Manegold, Boncz, Kersten 2002, "Optimizing main-memory join on modern hardware" (radix cluster in several passes).
+class StagedWriter {
+public:
+    /// Borrows `of`. Replaces the entries that an earlier writer appended for the block.
+    StagedWriter(ChunkLists& of, std::size_t block);
+
+    /// `list`: number of the list, or lists(), which discards the entry.
+    void append(std::uint32_t list, const CellEntry& entry) {
+        Group& group = groups_[list >> group_bits_];
+        if (group.end == group.chunk_end) [[unlikely]]
+            add_chunk(group);
+        StagedEntry& staged = stage_[group.end++];
+        prefetch(&staged + 4);
+        staged.list = list;
+        std::memcpy(staged.entry, &entry, sizeof(CellEntry));
+    }
+    /// Does nothing: flush() empties the list that discards entries.
+    void reset_discarded() {}
+    /// True if flush() must be called before a further batch of `max_batch` entries.
+    bool full() const { return free_ + needed_ > chunks_; }
+    void flush();
+    /// Makes the lists readable.
+    void finish();
+
+    static constexpr std::size_t max_batch = 8 * 256;  ///< 8 entries of each of 256 objects
+
+private:
+    struct StagedEntry {
+        std::uint32_t list;
+        std::uint32_t entry[4];  // CellEntry, without its alignment
+    };
+    /// A group of lists. Its entries are in chunks of the stage, linked by next_.
+    struct Group {
+        std::uint32_t end = 0, chunk_end = 0;  // positions in the stage: behind the last entry, behind its chunk
+        std::uint32_t first = 0;               // first chunk
+    };
+
+    void add_chunk(Group& group);
+    void flush(const Group& group);
+    void append_all(const StagedEntry* begin, std::size_t count);
+
+    ChunkWriter writer_;
+    unsigned group_bits_ = 0;  // log2 of the number of lists of a group
+    std::vector<Group> groups_;
+    std::size_t chunk_size_, chunks_, needed_;
+    std::size_t free_ = 0;  // first chunk that is in no group
+    Buffer<StagedEntry> stage_;
+    std::vector<std::uint32_t> next_;  // by chunk: next chunk of its group
 };
 
 }  // namespace octopair

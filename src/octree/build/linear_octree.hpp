@@ -8,7 +8,16 @@
 //   Class bits are set as boxes/entry.hpp says.
 //   The octree is a function of the source alone. Blocks of objects are only shares of the work.
 //
-// A build takes space and directory from a sample, and then runs the steps of build_steps.hpp with an executor.
+// A build takes space and directory from a plan (octree/plan/octree_plan.hpp). Then it runs these steps with an executor, each over blocks
+// of objects or ranges of octants:
+//
+//   encode   a batch of objects -> the octants of each object, and its entries (encoder.hpp)
+//   scatter  a batch's entries -> the lists of their octants, one list for each octant and block (chunk_lists.hpp). Encode and
+//            scatter alternate, batch by batch, in one pass over the objects. They are an MSD radix sort by octal code.
+//   count    the lists of all blocks, for a range of octants -> the number of entries of each octant
+//
+// A step reads only what earlier steps wrote, and writes memory that no other block or range writes. So threads or processes can run the
+// shares of a step concurrently, and can run a share again.
 //
 // Source: Lucchesi, Egbert, Harris 2014, sections 3.2 and 3.3.
 #pragma once
@@ -22,10 +31,10 @@
 #include "base/memory.hpp"
 #include "base/private_export.hpp"
 #include "boxes/box_source.hpp"
-#include "octree/build/build_steps.hpp"
+#include "octree/build/chunk_lists.hpp"
 #include "octree/executor.hpp"
 #include "octree/plan/directory.hpp"
-#include "octree/plan/sample.hpp"
+#include "octree/plan/octree_plan.hpp"
 #include "octree/plan/space.hpp"
 
 namespace octopair {
@@ -35,30 +44,37 @@ struct BuildSeconds {
     double encode = 0, scatter = 0, count = 0;
 };
 
-/// An octree's space and octants. Both are a function of a sample of the objects.
-struct OctreeLayout {
-    Space space;
-    Directory directory;
+inline constexpr std::size_t max_entries_per_object = 8;
+
+/// Data that steps pass to later steps.
+struct OCTOPAIR_PRIVATE_EXPORT BuildMemory {
+    explicit BuildMemory(PageSource& pages)
+        : lists(pages), begins(pages), totals(pages), valid(pages), seconds(pages) {}
+
+    /// Makes room for the given numbers of objects, blocks, octants and ranges of octants.
+    void resize(std::size_t objects, std::size_t blocks, std::size_t octants, std::size_t octant_ranges);
+
+    /// Two lists for each octant: list i has the home entries of octant i, and list `octants` + i has its ghosts. A home entry is the
+    /// entry in the leaf that the box begins in. All other entries are ghosts.
+    ChunkLists lists;
+    Buffer<std::uint64_t> begins;  // by octant: number of entries in earlier octants of the same range
+    Buffer<std::uint64_t> totals;  // by range of octants: number of entries
+    Buffer<std::uint8_t> valid;    // by block: 1 if all its objects are valid boxes
+    /// Time of the steps in a sample of the batches.
+    struct Seconds {
+        double encode = 0, scatter = 0;
+    };
+    Buffer<Seconds> seconds;  // by block
+
+    std::size_t octants = 0;
+    std::size_t home_list(std::size_t octant) const { return octant; }
+    std::size_t ghost_list(std::size_t octant) const { return octants + octant; }
 };
 
-/// Returns the positions of the sampled objects, from which the octants of an octree of `objects` objects are chosen.
-OCTOPAIR_PRIVATE_EXPORT Sample octant_sample(std::uint64_t objects);
-/// Returns the rule that decides, from the objects of octant_sample(), which octants are divided.
-OCTOPAIR_PRIVATE_EXPORT SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop);
-/// Space and shape of an octree, small enough to be sent to other processes.
-struct OctreePlan {
-    Space space;
-    SplitFlags shape;
-
-    OctreeLayout layout() const { return {space, Directory(space, shape)}; }
+struct NumberedOctants {
+    std::size_t number;
+    OctantIndex begin, end;
 };
-/// Plans an octree of `objects` objects. `sampled`: the entries at the positions octant_sample(objects).
-/// Throws: Error{cancelled}.
-OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects,
-                                               const std::stop_token& stop);
-OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop);
-/// Samples `source`, calls plan_octree(), and returns the layout of this plan.
-OCTOPAIR_PRIVATE_EXPORT OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop);
 
 class OCTOPAIR_PRIVATE_EXPORT LinearOctree {
 public:
@@ -101,8 +117,8 @@ public:
     const BuildSeconds& seconds() const { return seconds_; }
 
 private:
-    using Clock = std::chrono::steady_clock::time_point;
-    void fill(const EntrySource& source, Executor& executor, const std::stop_token& stop, Clock clock);
+    using TimePoint = std::chrono::steady_clock::time_point;
+    void fill(const EntrySource& source, Executor& executor, const std::stop_token& stop, TimePoint step_begin);
     double scatter_part(std::size_t blocks) const;
     void join_ranges(std::span<const NumberedOctants> ranges);
 

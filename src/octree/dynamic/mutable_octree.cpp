@@ -8,8 +8,8 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/build/encoder.hpp"
 #include "octree/build/linear_octree.hpp"
-#include "octree/build/octants_of.hpp"
 
 namespace octopair {
 

@@ -8,6 +8,13 @@
 
 namespace octopair {
 
+OctantCube OctantCube::child(unsigned digit) const {
+    OctantCube below{lo, level + 1};
+    const std::uint32_t side = cells_per_axis >> below.level;
+    for (unsigned axis = 0; axis < 3; ++axis) below.lo[axis] += (digit >> axis & 1u) * side;
+    return below;
+}
+
 Directory::Directory(const Space& space, const SplitFlags& shape) {
     if (shape.size() >= max_octants) throw Error(ErrorCode::resource_limit, "octree: needs 2^26 - 1 octants or more");
     octants_.reserve(shape.size());

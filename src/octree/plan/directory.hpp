@@ -16,9 +16,39 @@
 #include "base/private_export.hpp"
 #include "base/test_hooks.hpp"
 #include "octree/plan/space.hpp"
-#include "octree/plan/split_rule.hpp"
 
 namespace octopair {
+
+/// An octant by its position alone: first cell on each axis, and level. The side is 2^(21 - level) cells.
+struct OCTOPAIR_PRIVATE_EXPORT OctantCube {
+    Cell lo = {};
+    unsigned level = 0;
+
+    OctantCube child(unsigned digit) const;
+    /// Returns a bit mask of the children that `box` touches.
+    /// Requires: `box` touches this octant.
+    unsigned touched_below(const CellBox& box) const {
+        // For each axis: bit mask of the children in the lower half, and bit mask of the children in the upper half.
+        constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
+        const std::uint32_t half = (cells_per_axis >> level) / 2;
+        unsigned touched = 0xFF;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            const std::uint32_t middle = lo[axis] + half;
+            touched &= (box.lo[axis] < middle ? halves[axis][0] : 0) | (box.hi[axis] >= middle ? halves[axis][1] : 0);
+        }
+        return touched;
+    }
+    /// True if `box` begins in this octant.
+    /// Requires: `box` touches this octant.
+    bool holds_begin(const CellBox& box) const {
+        return box.lo[0] >= lo[0] && box.lo[1] >= lo[1] && box.lo[2] >= lo[2];
+    }
+    /// True if `box` is too large for the octants below.
+    bool keeps(const CellBox& box) const { return natural_level(box) <= level; }
+};
+
+/// Shape of a subtree: for each octant, in pre-order, 1 if it is split, otherwise 0.
+using SplitFlags = std::vector<std::uint8_t>;
 
 /// A position in Directory::octants().
 using OctantIndex = std::uint32_t;

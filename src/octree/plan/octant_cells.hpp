@@ -18,7 +18,7 @@
 namespace octopair {
 
 /// Map from coordinates to the cells of one octant. The first axis is the long axis of the space.
-/// Specification of cell_entries() (cell_sweep.hpp) and of BatchEncoder (octree/build/batch_encoder.hpp).
+/// Specification of cell_entries() (cell_sweep.hpp) and of BatchEncoder (octree/build/encoder.hpp).
 struct OctantCells {
     /// Up to this level an octant has as many fine cells as cells, or more. Deeper octants map coordinates from an origin of
     /// their own: float32 numbers near each other have more digits relative to this origin.

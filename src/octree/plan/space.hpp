@@ -44,7 +44,7 @@ inline unsigned natural_level(const CellBox& box) {
     return deepest - unsigned(std::bit_width(extent));
 }
 
-/// Map from coordinates to cells: the specification of the SIMD versions (space_kernel.cpp, encode/batch_encoder_kernel.cpp).
+/// Map from coordinates to cells: the specification of the SIMD versions (space.cpp, octree/build/encoder_kernel.cpp).
 struct SpaceMap {
     static constexpr unsigned fine_bits = 2;  ///< a cell has 2^fine_bits fine cells on each axis
     static constexpr unsigned bits = deepest + fine_bits;
@@ -105,7 +105,7 @@ public:
         cells(std::span(&entry, 1), {&box, 1});
         return box;
     }
-    /// Computes the cells of many boxes at once (space_kernel.cpp). An invalid box gets some cells with lo <= hi.
+    /// Computes the cells of many boxes at once. An invalid box gets some cells with lo <= hi.
     void cells(std::span<const Entry> entries, std::span<CellBox> boxes) const;
     void cells(std::span<const Box3f> bounds, std::span<CellBox> boxes) const;
 

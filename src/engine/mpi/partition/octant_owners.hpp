@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/mpi/partition/shared_top.hpp"
-#include "octree/build/octants_of.hpp"
+#include "octree/build/encoder.hpp"
 #include "octree/plan/directory.hpp"
 
 namespace octopair {

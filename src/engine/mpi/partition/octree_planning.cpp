@@ -9,7 +9,7 @@
 #include "base/stop.hpp"
 #include "base/tuning.hpp"
 #include "engine/mpi/comm/agreement.hpp"
-#include "octree/plan/split_rule.hpp"
+#include "octree/plan/octree_plan.hpp"
 
 namespace octopair {
 

@@ -24,8 +24,8 @@
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/partition/object_arrays.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
-#include "octree/build/box_locator.hpp"
-#include "octree/build/build_steps.hpp"
+#include "octree/build/chunk_lists.hpp"
+#include "octree/build/encoder.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/executor.hpp"
 

@@ -14,7 +14,7 @@
 
 #include "engine/mpi/comm/communicator.hpp"
 #include "octree/plan/directory.hpp"
-#include "octree/plan/split_rule.hpp"
+#include "octree/plan/octree_plan.hpp"
 
 namespace octopair {
 

@@ -1,4 +1,4 @@
-// Tests the kernel that encodes many boxes at once against its specification and against the rule of octants_of.hpp.
+// Tests the kernel that encodes many boxes at once against its specification and against for_each_octant_of().
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,9 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "octree/build/batch_encoder.hpp"
+#include "octree/build/encoder.hpp"
 #include "octree/build/linear_octree.hpp"
-#include "octree/build/octants_of.hpp"
 #include "support/kinds.hpp"
 
 namespace octopair::test {

@@ -1,4 +1,4 @@
-#include "octree/plan/split_rule.hpp"
+#include "octree/plan/octree_plan.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -25,14 +25,16 @@ void hand_down(const OctantCube& octant, const SampledBoxes& boxes, std::array<S
     }
 }
 
-}  // namespace
-
-OctantCube OctantCube::child(unsigned digit) const {
-    OctantCube below{lo, level + 1};
-    const std::uint32_t side = cells_per_axis >> below.level;
-    for (unsigned axis = 0; axis < 3; ++axis) below.lo[axis] += (digit >> axis & 1u) * side;
-    return below;
+std::vector<Entry> sample_of(const EntrySource& source) {
+    const Sample sample = octant_sample(source.size());
+    std::vector<std::size_t> positions(sample.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = sample[i];
+    std::vector<Entry> sampled(sample.size());
+    source.pick(positions, sampled);  // invalid objects are ignored here: scatter finds them, with their positions
+    return sampled;
 }
+
+}  // namespace
 
 void SampledOctant::keep() {
     const auto fits = [&](const CellBox& box) { return !octant.keeps(box); };
@@ -109,6 +111,37 @@ void SplitRule::grow(SampledOctant sampled, SplitFlags& shape) const {
     sampled = {};
     shape[index] = 1;
     for (SampledOctant& child : below) grow(std::exchange(child, {}), shape);
+}
+
+Sample octant_sample(std::uint64_t objects) {
+    const Tuning::Sampling& sampling = tuning().sampling;
+    return {std::size_t(objects), std::clamp<std::size_t>(objects / sampling.min_objects, 1, sampling.stride),
+            std::max(sampling.max_objects, std::size_t(objects) / sampling.max_stride)};
+}
+
+SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop) {
+    const std::size_t sampled = octant_sample(objects).size();
+    return {double(objects) / double(std::max<std::size_t>(1, sampled)), stop};
+}
+
+OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects, const std::stop_token& stop) {
+    OctreePlan plan;
+    plan.space = Space::fit(sampled, objects);
+    SampledOctant root;
+    root.inside.resize(sampled.size());
+    plan.space.cells(sampled, root.inside);
+    split_rule(objects, stop).grow(std::move(root), plan.shape);
+    return plan;
+}
+
+OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop) {
+    // The sample is freed when this function returns, before the entries need the memory.
+    const std::vector<Entry> sampled = sample_of(source);
+    return plan_octree(sampled, source.size(), stop);
+}
+
+OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop) {
+    return plan_octree(source, stop).layout();
 }
 
 }  // namespace octopair

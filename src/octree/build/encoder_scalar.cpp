@@ -1,11 +1,9 @@
-#include "octree/build/box_locator.hpp"
-
+// Specification of the SIMD versions of encoder_kernel.cpp. Searches run it only on processors without SIMD.
 #include <algorithm>
 #include <cstring>
 
-#include "base/tuning.hpp"
-#include "boxes/box_kernel.hpp"
-#include "octree/build/octants_of.hpp"
+#include "boxes/box_check.hpp"
+#include "octree/build/encoder.hpp"
 
 namespace octopair {
 
@@ -19,13 +17,6 @@ bool make_entries(const Float32Boxes& boxes, BatchEntries& entries) {
     }
     return good;
 }
-
-BoxLocator::BoxLocator(const Space& space, const Directory& directory)
-    : map(space.map()),
-      table(directory.leaf_table()),
-      large_table(table.size > tuning().large.max_near_table),
-      space_(space),
-      directory_(directory) {}
 
 Directory::Leaf BoxLocator::locate(const Entry& entry, std::uint32_t position, CrosserBatch& crossers) const {
     const CellBox cells = space_.cells(entry);
@@ -52,6 +43,27 @@ void BoxLocator::locate_scalar(std::span<const Entry> entries, LocatedBatch& bat
     batch.crossers = 0;
     for (std::uint32_t i = 0; i < entries.size(); ++i) batch.leaves[i] = locate(entries[i], i, batch).element();
     for (std::size_t i = 0; i < batch.crossers; ++i) batch.end_leaf[i] = directory_.leaf(batch.cells(i).hi).element();
+}
+
+bool BatchEncoder::encode_scalar(const Float32Boxes& boxes, EncodedBatch& batch) const {
+    BatchEntries entries;
+    const bool good = make_entries(boxes, entries);
+    encode_scalar(std::span<const Entry>(entries).first(boxes.boxes.size()), batch);
+    return good;
+}
+
+void BatchEncoder::encode_scalar(std::span<const Entry> entries, EncodedBatch& batch) const {
+    batch.crossers = 0;
+    for (std::uint32_t i = 0; i < entries.size(); ++i) {
+        const Directory::Leaf leaf = locator.locate(entries[i], i, batch);
+        batch.homes[i] = OctantCells(space_, directory_.octants()[leaf.octant()]).entry(entries[i]);
+        batch.lists[i] = natural_level(space_.cells(entries[i])) < leaf.level() ? no_list : leaf.octant();
+    }
+}
+
+void BatchEncoder::ghosts_scalar(CrosserRange crossers, GhostGroup& group) {
+    group.counts = {};
+    group.left_out = (1u << crossers.count) - 1;
 }
 
 }  // namespace octopair

@@ -1,12 +1,16 @@
-// SplitRule: decides on a sample of the scene which octants of a linear octree are split.
+// OctreePlan: chooses the space and the octants of a linear octree from a sample of the objects.
 // Start here to change when an octant is split.
+//
+// 1. A sample of the objects is taken: one object of each stride, at a scattered place (octant_sample()).
+// 2. The space is fitted to the sample (space.hpp).
+// 3. Octants are split, from the root down, as long as SplitRule says so. The result is a Directory.
 //
 // An octant is split if it is crowded: it holds too many objects, or a sweep along its best axis would test too many. It is
 // not split if the split
 //   would multiply entries (boxes as large as the octant), or
 //   would copy the boxes handed down from above into the children without thinning them.
 //
-// The thresholds are in base/tuning.hpp (Tuning::Split).
+// The thresholds are in base/tuning.hpp (Tuning::Sampling, Tuning::Split).
 //
 // Decisions depend only on sums over the sampled boxes, and on their least and greatest cells. So parts of a sample can be
 // counted separately, and the order of boxes does not matter.
@@ -14,44 +18,19 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "base/private_export.hpp"
+#include "boxes/entry.hpp"
+#include "boxes/entry_source.hpp"
+#include "octree/plan/directory.hpp"
+#include "octree/plan/sample.hpp"
 #include "octree/plan/space.hpp"
 
 namespace octopair {
-
-/// An octant by its position alone: first cell on each axis, and level. The side is 2^(21 - level) cells.
-struct OCTOPAIR_PRIVATE_EXPORT OctantCube {
-    Cell lo = {};
-    unsigned level = 0;
-
-    OctantCube child(unsigned digit) const;
-    /// Returns a bit mask of the children that `box` touches.
-    /// Requires: `box` touches this octant.
-    unsigned touched_below(const CellBox& box) const {
-        // For each axis: bit mask of the children in the lower half, and bit mask of the children in the upper half.
-        constexpr std::array<std::array<unsigned, 2>, 3> halves = {{{0x55, 0xAA}, {0x33, 0xCC}, {0x0F, 0xF0}}};
-        const std::uint32_t half = (cells_per_axis >> level) / 2;
-        unsigned touched = 0xFF;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-            const std::uint32_t middle = lo[axis] + half;
-            touched &= (box.lo[axis] < middle ? halves[axis][0] : 0) | (box.hi[axis] >= middle ? halves[axis][1] : 0);
-        }
-        return touched;
-    }
-    /// True if `box` begins in this octant.
-    /// Requires: `box` touches this octant.
-    bool holds_begin(const CellBox& box) const {
-        return box.lo[0] >= lo[0] && box.lo[1] >= lo[1] && box.lo[2] >= lo[2];
-    }
-    /// True if `box` is too large for the octants below.
-    bool keeps(const CellBox& box) const { return natural_level(box) <= level; }
-};
-
-/// Shape of a subtree: for each octant, in pre-order, 1 if it is split, otherwise 0.
-using SplitFlags = std::vector<std::uint8_t>;
 
 /// An octant and the sampled boxes that touch it.
 struct SampledOctant {
@@ -94,5 +73,31 @@ private:
     double weight_;
     std::stop_token stop_;
 };
+
+/// Returns the positions of the sampled objects, from which the octants of an octree of `objects` objects are chosen.
+OCTOPAIR_PRIVATE_EXPORT Sample octant_sample(std::uint64_t objects);
+/// Returns the rule that decides, from the objects of octant_sample(), which octants are divided.
+OCTOPAIR_PRIVATE_EXPORT SplitRule split_rule(std::uint64_t objects, const std::stop_token& stop);
+
+/// An octree's space and octants. Both are a function of a sample of the objects.
+struct OctreeLayout {
+    Space space;
+    Directory directory;
+};
+
+/// Space and shape of an octree, small enough to be sent to other processes.
+struct OctreePlan {
+    Space space;
+    SplitFlags shape;
+
+    OctreeLayout layout() const { return {space, Directory(space, shape)}; }
+};
+/// Plans an octree of `objects` objects. `sampled`: the entries at the positions octant_sample(objects).
+/// Throws: Error{cancelled}.
+OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(std::span<const Entry> sampled, std::uint64_t objects,
+                                               const std::stop_token& stop);
+OCTOPAIR_PRIVATE_EXPORT OctreePlan plan_octree(const EntrySource& source, const std::stop_token& stop);
+/// Samples `source`, calls plan_octree(), and returns the layout of this plan.
+OCTOPAIR_PRIVATE_EXPORT OctreeLayout make_layout(const EntrySource& source, const std::stop_token& stop);
 
 }  // namespace octopair
