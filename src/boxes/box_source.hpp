@@ -17,9 +17,9 @@
 #include <string>
 
 #include "base/private_export.hpp"
-#include "boxes/box_kernel.hpp"
 #include "boxes/entry.hpp"
 #include "boxes/entry_source.hpp"
+#include "boxes/outward_rounding.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {

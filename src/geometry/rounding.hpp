@@ -1,5 +1,5 @@
-// Outward rounding: bounds of numbers that float32 or float64 cannot represent. boxes/box_kernel.cpp has finite_float_above()
-// for many numbers at a time. The rule for a box with margin and padding is OutwardRounding in boxes/box_kernel.hpp.
+// Outward rounding: bounds of numbers that float32 or float64 cannot represent. boxes/outward_rounding.cpp has finite_float_above()
+// for many numbers at a time. The rule for a box with margin and padding is OutwardRounding in boxes/outward_rounding.hpp.
 // Start here to change how float64 is rounded.
 //
 // Invariants

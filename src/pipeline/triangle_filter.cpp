@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "base/floating_point_scope.hpp"
-#include "boxes/box_kernel.hpp"
+#include "boxes/outward_rounding.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/exact/triangle_prefilter.hpp"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/radix_sort.hpp"
-#include "boxes/box_kernel.hpp"
+#include "boxes/outward_rounding.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
 #include "parallel/team.hpp"
 #include "scene/change_log.hpp"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "boxes/box_kernel.hpp"
+#include "boxes/outward_rounding.hpp"
 
 namespace octopair::test {
 namespace {

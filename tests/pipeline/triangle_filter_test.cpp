@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "boxes/box_kernel.hpp"
+#include "boxes/outward_rounding.hpp"
 #include "narrow_phase/exact/triangle_contact.hpp"
 #include "narrow_phase/exact/triangle_pair.hpp"
 #include "octopair/error.hpp"

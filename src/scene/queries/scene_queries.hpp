@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "boxes/box_kernel.hpp"
+#include "boxes/outward_rounding.hpp"
 #include "octopair/queries.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
 #include "parallel/team.hpp"
