@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "base/private_export.hpp"
-#include "boxes/box_source.hpp"
 #include "boxes/entry.hpp"
+#include "boxes/entry_source.hpp"
 #include "octree/plan/directory.hpp"
 #include "octree/plan/octant_cells.hpp"
 #include "octree/plan/space.hpp"
