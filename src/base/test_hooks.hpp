@@ -25,11 +25,13 @@ namespace octopair {
     /* octree/build/linear_octree.cpp */ \
     path(build_one_block) path(build_blocks) path(scattered_twice) path(count_ranges) path(kept_above_leaf) \
     path(ghost_entries) path(ghosts_by_rule) path(refilled) path(class_bits_brought) \
-    /* octree/scan/scan.cpp */ \
-    path(share_of_octants) path(large_octant) path(handed_down) path(own_swept) path(own_too_large) \
-    path(own_window_too_wide) path(handed_swept) path(handed_too_large) path(handed_window_too_wide) \
-    path(join_swept) path(join_crowded) path(swept_on_other_axis) path(crowd_whole) path(crowd_swept) \
-    path(crowd_parted) path(part_swept) path(part_recursive) \
+    /* octree/scan/scan.cpp, octree/scan/handed_down.cpp */ \
+    path(share_of_octants) path(large_octant) path(handed_down) \
+    /* octree/scan/octant_scan.cpp */ \
+    path(own_swept) path(own_too_large) path(own_window_too_wide) path(handed_swept) path(handed_too_large) \
+    path(handed_window_too_wide) path(join_swept) path(join_crowded) path(swept_on_other_axis) \
+    /* octree/scan/crowd.cpp */ \
+    path(crowd_whole) path(crowd_swept) path(crowd_parted) path(part_swept) path(part_recursive) \
     path(nested_once) path(nested_twice) path(nested_thrice) path(nested_deeper) path(nested_join) \
     path(not_nested_largest) path(not_nested_growth) path(not_nested_depth) \
     /* octree/sweep/recursive_sweep.cpp */ \
@@ -37,9 +39,9 @@ namespace octopair {
     path(recursion_spanning) path(recursion_halved) path(recursion_shared) \
     /* octree/sweep/start_order.cpp, octree/sweep/sweep_choice.cpp */ \
     path(sort_few) path(sort_buckets) path(sort_full_bucket) path(sort_radix) path(radix_blocks) path(hits_few) \
-    /* octree/sweep/cell_pair_maker.cpp */ \
+    /* octree/sweep/cell_sweep.cpp */ \
     path(cell_sweep_resumed) path(cell_hit_doubtful) path(cell_hit_refused) \
-    /* octree/sweep/sweep_kernel.cpp, octree/sweep/pair_maker.cpp */ \
+    /* octree/sweep/box_sweep.cpp */ \
     path(sweep_resumed) path(hit_turned) path(hit_settled) path(pairs_flushed) path(pairs_counted) \
     /* octree/dynamic/mutable_octree.cpp */ \
     path(change_listed) path(change_alone) path(change_joined) path(run_stopped) path(unit_in_cell) \
@@ -78,7 +80,7 @@ enum class Fault : unsigned {
     octant_border_open,       ///< a box that ends in the first cell of an octant is not stored in that octant
     window_end_open,          ///< a sweep does not test a column that begins where the rows of a block end
     cell_window_end_open,     ///< a sweep of one set on cells skips the last column of each row's window
-    cell_gap_too_small,       ///< a hit whose ends are in equal cells counts as a pair without an exact test
+    cell_depth_too_small,     ///< a hit whose ends are in equal cells counts as a pair without an exact test
     tile_end_open,            ///< a sweep skips a tile that begins where a tile of rows ends
     handed_to_wrong_child,    ///< an entry is handed down to an octant that it does not touch
     nested_space_moved,       ///< class bits of handed down entries are computed in a space that is shifted by one cell

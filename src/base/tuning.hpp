@@ -65,7 +65,7 @@ struct Tuning {
         std::size_t max_near_table = 1 << 17;  ///< elements: a larger table of leaves is prefetched
     } large;
 
-    /// How the octants of a linear octree are scanned (octree/scan/scan.cpp).
+    /// How the octants of a linear octree are scanned (octree/scan).
     struct Scan {
         std::size_t large_octant = 1 << 15;       ///< an octant with more entries is scanned by all threads together
         std::size_t max_share_entries = 1 << 13;  ///< maximum entries per share: a stop request is noticed soon

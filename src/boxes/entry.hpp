@@ -104,7 +104,7 @@ struct RoundingSlack {
     float depth(unsigned axis, float largest) const { return (largest + largest) * part + base[axis]; }
 };
 
-/// True if the boxes overlap by more than `depths` on each axis: the specification of keep_deep() (octree/sweep/sweep.hpp).
+/// True if the boxes overlap by more than `depths` on each axis: the specification of judge_hits() (octree/sweep/box_sweep.hpp).
 inline bool deep(const Entry& a, const Entry& b, const Depths& depths) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         if (!(std::min(a.max[axis] - b.min[axis], b.max[axis] - a.min[axis]) > depths[axis])) return false;

@@ -1,6 +1,8 @@
 // Passes: what an engine does for a Search (search.hpp): builds the octree of a call, and scans it into outputs.
-// Start here to add a new engine: write a class with these functions, and a class derived from Engine (octopair/engine.hpp) that owns it,
-// a Search, a TicketLock and a JobQueue. The smallest one is in threads/local_engine.cpp.
+// Start here to add a new engine.
+//
+// An engine is a class derived from Engine (octopair/engine.hpp) that owns its passes, a Search, a TicketLock and a JobQueue. The
+// smallest one is in threads/local_engine.cpp.
 #pragma once
 
 #include <algorithm>

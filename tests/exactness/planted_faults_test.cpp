@@ -51,7 +51,7 @@ constexpr auto planted_here = std::to_array<Planted>({
     {"octant_border_open", Fault::octant_border_open},
     {"window_end_open", Fault::window_end_open},
     {"cell_window_end_open", Fault::cell_window_end_open},
-    {"cell_gap_too_small", Fault::cell_gap_too_small},
+    {"cell_depth_too_small", Fault::cell_depth_too_small},
     {"tile_end_open", Fault::tile_end_open},
     {"handed_to_wrong_child", Fault::handed_to_wrong_child},
     {"nested_space_moved", Fault::nested_space_moved},

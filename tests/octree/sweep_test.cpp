@@ -1,233 +1,198 @@
-// Tests the sweep's SIMD kernel against its scalar specification, and both against a test of all boxes.
-
+// Tests that hold for both kinds of sweep, on cells and on boxes: kernels against scalar specifications, and both against brute force.
 #include "octree/sweep/sweep.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
+#include <cstdint>
+#include <iterator>
 #include <random>
 #include <set>
+#include <string>
+#include <vector>
 
-#include "octree/given_source.hpp"
-#include "octree/sweep/start_order.hpp"
-#include "support/compare.hpp"
+#include "octree/sweep_kinds.hpp"
 
 namespace octopair::test {
 namespace {
 
-using Hits = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+template <typename Kind>
+class Sweeps : public ::testing::Test {
+protected:
+    using Sweep = typename Kind::Sweep;
+    using Set = typename Kind::Set;
+    using Items = std::vector<typename Kind::Item>;
+    /// Pairs of objects. Has a pair as often as it was found.
+    using Found = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
 
-std::vector<Entry> random_entries(std::mt19937& random, std::size_t count, std::uint32_t first_object) {
-    std::uniform_int_distribution<int> place(0, 12), length(0, 3), mask(0, 31);
-    std::vector<Entry> entries(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        const int times = random() % 16 == 0 ? 5 : 1;  // a few boxes are far longer
-        for (int axis = 0; axis < 3; ++axis) {
-            entries[i].min[axis] = float(place(random));
-            entries[i].max[axis] = entries[i].min[axis] + float(times * length(random));
-        }
-        entries[i].object = first_object + std::uint32_t(i);
-        entries[i].mask = std::uint32_t(mask(random) & mask(random) & mask(random));
+    static constexpr std::size_t sizes[] = {0, 1, 2, 3, 4, 5, 7, 8, 9, 31, 33, 40, 63, 64, 65, 100, 130, 700};
+
+    Items random_entries(std::uint32_t first_object) {
+        return Kind::random_entries(random_, sizes[random_() % std::size(sizes)], first_object);
     }
-    return entries;
-}
+    unsigned random_axis() { return unsigned(random_() % 3); }
 
-SweepSet sorted_set(const std::vector<Entry>& entries, unsigned axis) {
-    std::vector<SortKey> order(entries.size());
-    for (std::uint32_t i = 0; i < entries.size(); ++i) order[i] = sort_key(entries[i].min[axis], i);
-    std::sort(order.begin(), order.end());
-    std::vector<Entry> sorted;
-    for (const SortKey key : order) sorted.push_back(entries[position_of(key)]);
-    SweepSet set;
-    set.assign(sorted, axis);
-    return set;
-}
-
-using Kernel = std::size_t (*)(const Sweep&, SweepCursor&, std::span<HitMask>);
-
-template <typename Body>
-void for_each_bit(const HitMask& hit, Body&& body) {
-    for (unsigned bit = 0; bit < block_size; ++bit) {
-        if (hit.bits() >> bit & 1u) body(hit.first_row() + bit);
+    static Sweep sweep_of(const Set& rows, const Set& columns, SweepKind kind) {
+        return {rows, kind == SweepKind::self ? rows : columns, kind};
     }
-}
 
-/// Returns all hits, collected through a queue of `room` masks.
-Hits run(Kernel kernel, const Sweep& sweep, std::size_t room) {
-    Hits hits;
-    std::vector<HitMask> queue(room);
-    SweepCursor cursor;
-    while (cursor.row < sweep.rows.size()) {
-        const std::size_t count = kernel(sweep, cursor, queue);
-        for (const HitMask& hit : std::span(queue).first(count)) {
-            for_each_bit(hit, [&](std::uint32_t row) { hits.emplace_back(row, hit.column()); });
-        }
+    static Positions positions(Kernel<Sweep> kernel, const Sweep& sweep, std::size_t room) {
+        return Kind::positions(run(kernel, sweep, room));
     }
-    return hits;
-}
 
-/// Returns the hits by the rule of sweep.hpp: blocks of rows, columns, rows.
-Hits brute(const SweepSet& rows, const SweepSet& columns, SweepKind kind) {
-    Hits hits;
-    for (std::size_t first = 0; first < rows.size(); first += block_size) {
-        for (std::uint32_t k = 0; k < columns.size(); ++k) {
-            for (auto i = std::uint32_t(first); i < std::min(first + block_size, rows.size()); ++i) {
-                const bool in_order = kind == SweepKind::self    ? k > i
-                                      : kind == SweepKind::cross ? columns.low(0)[k] >= rows.low(0)[i]
-                                                                 : columns.low(0)[k] > rows.low(0)[i];
-                const Entry row = rows.entry(i);
-                const Entry column = columns.entry(k);
-                if (in_order && overlap(row, column) && (row.mask & column.mask) == 0) hits.emplace_back(i, k);
+    static Found found_by(Kernel<Sweep> kernel, const Sweep& sweep) {
+        Found found;
+        for (const Pair& pair : Kind::pairs(sweep, run(kernel, sweep, 1000))) found.emplace(pair.a, pair.b);
+        return found;
+    }
+
+    /// Returns the pairs that a test of every row against every column of its window finds.
+    static Found brute_force(const Sweep& sweep) {
+        Found found;
+        for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
+            const auto row = Kind::item(sweep.rows, i);
+            for (std::size_t k = 0; k < sweep.columns.size(); ++k) {
+                const auto column = Kind::item(sweep.columns, k);
+                const bool in_window = sweep.kind == SweepKind::self
+                                           ? k > i
+                                           : Kind::in_order(sweep, i, k, sweep.kind == SweepKind::cross_strict);
+                if (in_window && Kind::is_pair(row, column)) found.insert(std::minmax(row.object, column.object));
             }
         }
+        return found;
     }
-    return hits;
-}
 
-TEST(Sweep, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
-    std::mt19937 random(1);
+    /// Returns the pairs within the entries, or between both lists of entries, whatever their order.
+    static Found pairs_within(const Items& entries) {
+        Found found;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            for (std::size_t k = i + 1; k < entries.size(); ++k) {
+                if (Kind::is_pair(entries[i], entries[k])) found.emplace(entries[i].object, entries[k].object);
+            }
+        }
+        return found;
+    }
+    static Found pairs_between(const Items& first, const Items& second) {
+        Found found;
+        for (const auto& a : first) {
+            for (const auto& b : second) {
+                if (Kind::is_pair(a, b)) found.emplace(a.object, b.object);
+            }
+        }
+        return found;
+    }
+
+    /// Expects of each kind of sweep, by the kernel and by the specification, the pairs of brute force; and each pair once.
+    /// Returns the number of pairs.
+    std::size_t expect_all_pairs(const Items& first, const Items& second) {
+        const unsigned axis = random_axis();
+        const Set rows = Kind::sorted_set(first, axis), columns = Kind::sorted_set(second, axis);
+        for (const Kernel<Sweep> kernel : {Kernel<Sweep>(find_hits), Kernel<Sweep>(find_hits_scalar)}) {
+            for (const SweepKind kind : sweep_kinds) {
+                const Sweep sweep = sweep_of(rows, columns, kind);
+                EXPECT_EQ(found_by(kernel, sweep), brute_force(sweep)) << "kind " << int(kind);
+            }
+            EXPECT_EQ(found_by(kernel, sweep_of(rows, rows, SweepKind::self)), pairs_within(first));
+            Found both_ways = found_by(kernel, sweep_of(rows, columns, SweepKind::cross));
+            both_ways.merge(found_by(kernel, sweep_of(columns, rows, SweepKind::cross_strict)));
+            EXPECT_EQ(both_ways, pairs_between(first, second));
+        }
+        return pairs_within(first).size() + pairs_between(first, second).size();
+    }
+
+    std::mt19937 random_{1};
+};
+
+struct KindName {
+    template <typename Kind>
+    static std::string GetName(int) {
+        return Kind::name;
+    }
+};
+using Kinds = ::testing::Types<CellKind, BoxKind>;
+TYPED_TEST_SUITE(Sweeps, Kinds, KindName);
+
+TYPED_TEST(Sweeps, KernelAndSpecificationFindTheSameHitsInTheSameOrder) {
+    constexpr std::size_t min_room = TypeParam::Sweep::min_room;
     for (int round = 0; round < 300; ++round) {
-        const std::size_t sizes[] = {0, 1, 2, 7, 8, 9, 33, 100};
-        const auto first = random_entries(random, sizes[random() % 8], 0);
-        const auto second = random_entries(random, sizes[random() % 8], 1000);
-        const unsigned axis = unsigned(random() % 3);
-        const SweepSet rows = sorted_set(first, axis);
-        const SweepSet columns = sorted_set(second, axis);
-        for (const SweepKind kind : {SweepKind::self, SweepKind::cross, SweepKind::cross_strict}) {
-            const SweepSet& others = kind == SweepKind::self ? rows : columns;
-            const Hits expected = brute(rows, others, kind);
-            for (const std::size_t room : {max_columns, max_columns + 3, std::size_t(1000)}) {
-                ASSERT_EQ(run(sweep_rows_scalar, {rows, others, kind}, room), expected) << "round " << round;
-                ASSERT_EQ(run(sweep_rows, {rows, others, kind}, room), expected) << "round " << round;
+        const unsigned axis = this->random_axis();
+        const auto rows = TypeParam::sorted_set(this->random_entries(0), axis);
+        const auto columns = TypeParam::sorted_set(this->random_entries(1000), axis);
+        for (const SweepKind kind : sweep_kinds) {
+            const auto sweep = this->sweep_of(rows, columns, kind);
+            const Positions expected = this->positions(find_hits_scalar, sweep, 100'000);
+            for (const std::size_t room :
+                 {min_room, min_room + 3, min_room + 5, std::size_t(1000), std::size_t(4000)}) {
+                ASSERT_EQ(this->positions(find_hits_scalar, sweep, room), expected) << "round " << round;
+                ASSERT_EQ(this->positions(find_hits, sweep, room), expected) << "round " << round;
             }
         }
     }
 }
 
-TEST(Sweep, HitsBecomePairsInOrder) {
-    std::mt19937 random(4);
-    const SweepSet rows = sorted_set(random_entries(random, 300, 0), 0);
-    const SweepSet columns = sorted_set(random_entries(random, 200, 1000), 0);
-    for (const std::uint32_t second_begin : {0u, 1000u}) {
-        std::vector<HitMask> hits(20'000);
-        const Sweep sweep{rows, columns, SweepKind::cross};
-        SweepCursor cursor;
-        hits.resize(sweep_rows(sweep, cursor, hits));
-        ASSERT_GE(cursor.row, rows.size());
-        std::vector<Pair> expected, found(hits.size() * max_hits);
-        for (const HitMask& hit : hits) {
-            for_each_bit(hit, [&](std::uint32_t row) {
-                expected.push_back({rows.object()[row], columns.object()[hit.column()] - second_begin});
-            });
+TYPED_TEST(Sweeps, FindEachPairOfRandomEntriesOnce) {
+    std::size_t all = 0;
+    for (int round = 0; round < 50 && !this->HasFailure(); ++round) {
+        all += this->expect_all_pairs(this->random_entries(0), this->random_entries(1000));
+    }
+    EXPECT_GT(all, 1000u);
+}
+
+/// Boxes that are equal, are points, fill the grid, touch at corners, have one long box among them, or share a bit of their masks.
+enum class Degenerate : std::uint8_t { coincident, points, filling, touching, one_long, one_mask };
+constexpr Degenerate degenerate_kinds[] = {Degenerate::coincident, Degenerate::points,   Degenerate::filling,
+                                           Degenerate::touching,   Degenerate::one_long, Degenerate::one_mask};
+
+GridBox degenerate_box(std::mt19937& random, Degenerate kind, std::size_t i) {
+    GridBox box{};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        const auto place = std::uint32_t(random() % GridBox::last);
+        std::uint32_t &low = box.low[axis] = place, &high = box.high[axis] = place + std::uint32_t(random() % 2);
+        if (kind == Degenerate::coincident) low = 5, high = 6;
+        if (kind == Degenerate::points) low = high = place % 4;
+        if (kind == Degenerate::filling) low = 0, high = GridBox::last;
+        if (kind == Degenerate::touching) low = std::uint32_t(i % GridBox::last), high = low + 1;
+        if (kind == Degenerate::one_long && i == 0) low = 0, high = GridBox::last;
+    }
+    if (kind == Degenerate::one_mask) box.mask = 4;
+    return box;
+}
+
+TYPED_TEST(Sweeps, FindEachPairOfDegenerateEntriesOnce) {
+    for (const Degenerate kind : degenerate_kinds) {
+        std::size_t all = 0;
+        for (const std::size_t count : {1, 2, 8, 65, 200}) {
+            const auto entries = [&](std::size_t first_object) {
+                std::vector<typename TypeParam::Item> made;
+                for (std::size_t i = 0; i < count; ++i) {
+                    made.push_back(
+                        TypeParam::entry(degenerate_box(this->random_, kind, i), std::uint32_t(first_object + i)));
+                }
+                return made;
+            };
+            const auto first = entries(0);
+            all += this->expect_all_pairs(first, entries(1000));
         }
-        found.resize(pairs_of_hits(sweep, hits, second_begin, found.data()));
-        EXPECT_GT(found.size(), 100u);
-        EXPECT_TRUE(same_sequence(found, expected));
+        ASSERT_FALSE(this->HasFailure()) << "kind " << int(kind);
+        EXPECT_EQ(all == 0, kind == Degenerate::one_mask) << "kind " << int(kind);
     }
 }
 
-TEST(Sweep, KernelAndSpecificationAgreeOnWhatIsDeep) {
-    std::mt19937 random(5);
-    std::vector<Entry> entries = random_entries(random, 500, 0);
-    for (Entry& entry : entries) {
-        entry.mask = 0;
-        for (float& bound : entry.max) bound += float(random() % 3) * 1e-6f;
-        if (random() % 50 == 0) entry.max[random() % 3] = 3.40282347e38f;
+TYPED_TEST(Sweeps, BaselineInstructionSetFindsTheSameHits) {
+    constexpr std::size_t min_room = TypeParam::Sweep::min_room;
+    const auto rows = TypeParam::sorted_set(TypeParam::random_entries(this->random_, 2000, 0), 1);
+    const auto columns = TypeParam::sorted_set(TypeParam::random_entries(this->random_, 500, 10'000), 1);
+    for (const SweepKind kind : sweep_kinds) {
+        const auto sweep = this->sweep_of(rows, columns, kind);
+        const std::size_t room = min_room + 42;
+        const Positions best = this->positions(find_hits, sweep, room);
+        restrict_sweep_to_baseline(true);
+        const std::string restricted = sweep_instruction_set();
+        const Positions baseline = this->positions(find_hits, sweep, room);
+        restrict_sweep_to_baseline(false);
+        EXPECT_EQ(best, baseline) << "against " << restricted;
+        EXPECT_GT(best.size(), 1000u);
     }
-    const SweepSet set = sorted_set(entries, 1);
-    const Sweep sweep{set, set, SweepKind::self};
-    const Depths depths = {0, 1e-6f, 1};
-    std::vector<HitMask> hits(100'000);
-    SweepCursor cursor;
-    hits.resize(sweep_rows(sweep, cursor, hits));
-    std::vector<HitMask> kept = hits;
-    keep_deep(sweep, depths, kept);
-    std::array<std::size_t, 2> seen{};
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        for_each_bit(hits[i], [&](std::uint32_t row) {
-            const bool expected = deep(set.entry(row), set.entry(hits[i].column()), depths);
-            ASSERT_EQ((kept[i].bits() >> (row - hits[i].first_row()) & 1u) != 0, expected);
-            ++seen[expected ? 1 : 0];
-        });
-    }
-    EXPECT_GT(seen[0], 100u);
-    EXPECT_GT(seen[1], 100u);
-}
-
-TEST(Sweep, HitsMustBeDeeperTheLargerTheNumbers) {
-    std::vector<Entry> entries(33);
-    for (std::size_t i = 0; i < entries.size(); ++i) entries[i] = {{0, 1, 2}, {3, 3, 3}, std::uint32_t(i), 0};
-    entries[20].min[0] = -0x1p20f;
-    entries[32].max[1] = 3.40282347e38f;
-    const SweepSet set = sorted_set(entries, 2);
-    const Depths depths = certain_depths({set, set, SweepKind::self}, {{0, 1, 0.5f}});
-    EXPECT_EQ(depths[0], 2.0f);
-    EXPECT_EQ(depths[1], std::numeric_limits<float>::infinity());
-    EXPECT_EQ(depths[2], 0.5f + 6 * 0x1p-20f);
-    const SweepSet other = sorted_set({entries[0]}, 2);
-    EXPECT_EQ(certain_depths({other, set, SweepKind::cross}, {{0, 1, 0.5f}}), depths);
-}
-
-TEST(StartOrder, SortsByLowEndThenPosition) {
-    std::mt19937 random(6);
-    for (const std::size_t count : {0, 1, 2, 24, 25, 500, 4096}) {
-        for (const float far : {1.0f, 3e38f}) {  // one far box crowds all others into one bucket
-            std::vector<Entry> entries = random_entries(random, count, 0);
-            for (Entry& entry : entries) {
-                entry.min[2] = float(random() % 1000) / 8 - 50;
-                entry.max[2] = entry.min[2] + 1;
-            }
-            if (count > 0) entries[count / 2].max[2] = entries[count / 2].min[2] = far;
-            StartOrder order({});
-            NoPairs none;
-            SerialExecutor serial(none);
-            const GivenSource source(entries, 0);
-            const std::vector<EntryId> ids = ids_of(entries);
-            const std::span<const SortKey> keys = order.sort({source, ids}, 2, serial);
-            const SweepSet expected = sorted_set(entries, 2);
-            ASSERT_EQ(keys.size(), count);
-            for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(position_of(keys[i]), expected.object()[i]);
-        }
-    }
-}
-
-TEST(Sweep, CrossingBothWaysFindsEachPairOnce) {
-    std::mt19937 random(2);
-    const SweepSet rows = sorted_set(random_entries(random, 60, 0), 0);
-    const SweepSet columns = sorted_set(random_entries(random, 80, 1000), 0);
-    std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
-    for (const auto& [i, k] : run(sweep_rows, {rows, columns, SweepKind::cross}, 100)) found.insert({i, k});
-    for (const auto& [k, i] : run(sweep_rows, {columns, rows, SweepKind::cross_strict}, 100)) found.insert({i, k});
-    std::multiset<std::pair<std::uint32_t, std::uint32_t>> expected;
-    for (std::uint32_t i = 0; i < rows.size(); ++i) {
-        for (std::uint32_t k = 0; k < columns.size(); ++k) {
-            const Entry row = rows.entry(i), column = columns.entry(k);
-            if (overlap(row, column) && (row.mask & column.mask) == 0) expected.insert({i, k});
-        }
-    }
-    EXPECT_EQ(found, expected);
-}
-
-TEST(Sweep, BaselineInstructionSetFindsTheSameHits) {
-    std::mt19937 random(3);
-    const SweepSet set = sorted_set(random_entries(random, 2000, 0), 1);
-    const Hits best = run(sweep_rows, {set, set, SweepKind::self}, 50);
-    restrict_sweep_to_baseline(true);
-    const std::string restricted = sweep_instruction_set();
-    const Hits baseline = run(sweep_rows, {set, set, SweepKind::self}, 50);
-    restrict_sweep_to_baseline(false);
-    EXPECT_EQ(best, baseline) << "against " << restricted;
-    EXPECT_GT(best.size(), 1000u);
-}
-
-TEST(Sweep, FarBoxesTouchTheLargestFiniteNumbersOnly) {
-    const float most = 3.40282347e38f;
-    std::vector<Entry> entries(2);
-    entries[0] = {{-most, -most, -most}, {most, most, most}, 0, 0};
-    entries[1] = {{most, most, most}, {most, most, most}, 1, 0};
-    const SweepSet set = sorted_set(entries, 0);
-    EXPECT_EQ(run(sweep_rows, {set, set, SweepKind::self}, 10), (Hits{{0, 1}}));
 }
 
 }  // namespace

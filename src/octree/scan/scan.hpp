@@ -6,8 +6,8 @@
 //   Two entries are compared only if they are in one octant, or if the octant of one entry is inside the octant of the other.
 //   The masks of two entries decide which octant reports them as a pair (boxes/entry.hpp).
 //
-// If a sweep of an octant would cost too much, the octant's entries become a nested linear octree with a space of its own.
-// If nesting would not give smaller octants, recursive_sweep.hpp is used. Both decisions are functions of the entries alone.
+// octant_scan.hpp has the scan of one octant, handed_down.hpp the entries that are handed down. If a sweep of an octant would cost too
+// much, the octant's entries are a crowd, which may become a nested linear octree (crowd.hpp).
 //
 // Source: Lucchesi, Egbert, Harris 2014, section 3.3, step 7.
 #pragma once
@@ -15,7 +15,8 @@
 #include <functional>
 
 #include "octree/build/linear_octree.hpp"
-#include "octree/sweep/pair_maker.hpp"
+#include "octree/executor.hpp"
+#include "octree/sweep/sweep.hpp"
 
 namespace octopair {
 

@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "octree/sweep/cell_pair_maker.hpp"
-#include "octree/sweep/cell_set.hpp"
+#include "octree/sweep/cell_sweep.hpp"
 
 namespace octopair {
 
@@ -20,7 +19,7 @@ struct ScanMemory {
     Runs runs, next_runs;                                 // entries of the scanned octant, and of the next octant
     CellSet own_set, handed_set;                          // own entries, and entries handed down, ready for a sweep
     std::vector<CellEntry> handed_cells;                  // entries handed down, with cells of the octant
-    std::array<std::vector<CellEntry>, 4> cells_of_part;  // entries of a join, by OctantScan::Part::number()
+    std::array<std::vector<CellEntry>, 4> cells_of_part;  // entries of a join, by OctantPart::number()
     CellPairMaker::Memory pair_maker;
 };
 

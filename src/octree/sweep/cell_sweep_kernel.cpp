@@ -1,4 +1,4 @@
-// SIMD versions of the functions of cell_sweep.hpp and cell_set.hpp. Highway compiles them for each instruction set.
+// SIMD versions of the functions of cell_sweep.hpp. Highway compiles them for each instruction set.
 //
 // - A row is tested against 64 columns at a time, by four saturated subtractions of bytes for each register of columns. In a self sweep, a
 //   block of rows whose windows end earlier is tested against 32. All hits are written, without a branch on whether there are any: dense
@@ -25,12 +25,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 
-std::size_t cell_hits_simd(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
-    return cell_hits_scalar(sweep, cursor, hits);
+std::size_t find_hits_simd(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+    return find_hits_scalar(sweep, cursor, hits);
 }
 
-void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const CertainGaps& gaps, JudgedHits& judged) {
-    judge_hits_scalar(sweep, hits, gaps, judged);
+void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const CellDepths& depths, JudgedHits& judged) {
+    judge_hits_scalar(sweep, hits, depths, judged);
 }
 
 void cell_entries_simd(const OctantCells& cells, std::span<const Entry> entries, CellEntry* out) {
@@ -45,6 +45,8 @@ void write_planes_simd(std::span<const CellEntry> entries, std::uint8_t* planes,
 }
 
 #else
+
+constexpr std::size_t row_block = CellSweep::row_block, column_group = CellSweep::column_group;
 
 using SignedHalves = hn::Repartition<std::int16_t, Words>;
 
@@ -196,12 +198,12 @@ HWY_INLINE CellHit* test_rows(const SweepPlanes& planes, const RowBlock<count>& 
 }
 
 /// Rows of a self sweep are tested in blocks.
-std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+std::size_t find_self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
     constexpr std::size_t narrow = 32;
     const CellWindows windows(sweep);
     const SweepPlanes planes{Planes(sweep.rows), Planes(sweep.rows)};
     CellHit* at = hits.data();
-    CellHit* const last = hits.data() + (hits.size() - min_hit_room);
+    CellHit* const last = hits.data() + (hits.size() - CellSweep::min_room);
     auto [row, base, in_row] = cursor;
     RunPrefetcher ahead = sweep.ahead == nullptr ? RunPrefetcher() : *sweep.ahead;  // a copy stays in registers
     const std::size_t rows = sweep.rows.size(), rows_end = std::min(rows, row + tuning().sweep.cell_rows_per_call);
@@ -233,11 +235,11 @@ std::size_t self_hits(const CellSweep& sweep, CellCursor& cursor, std::span<Cell
     return std::size_t(at - hits.data());
 }
 
-std::size_t cross_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+std::size_t find_cross_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
     const CellWindows windows(sweep);
     const SweepPlanes planes{Planes(sweep.rows), Planes(sweep.columns)};
     CellHit* at = hits.data();
-    CellHit* const last = hits.data() + (hits.size() - min_hit_room);
+    CellHit* const last = hits.data() + (hits.size() - CellSweep::min_room);
     auto [row, base, in_row] = cursor;
     const std::size_t rows_end = std::min(sweep.rows.size(), row + tuning().sweep.cell_rows_per_call);
     for (; row < rows_end; ++row, in_row = false) {
@@ -255,17 +257,17 @@ std::size_t cross_hits(const CellSweep& sweep, CellCursor& cursor, std::span<Cel
     return std::size_t(at - hits.data());
 }
 
-std::size_t cell_hits_simd(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
-    return sweep.kind == SweepKind::self ? self_hits(sweep, cursor, hits) : cross_hits(sweep, cursor, hits);
+std::size_t find_hits_simd(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+    return sweep.kind == SweepKind::self ? find_self_hits(sweep, cursor, hits) : find_cross_hits(sweep, cursor, hits);
 }
 
-void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const CertainGaps& gaps, JudgedHits& judged) {
+void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const CellDepths& depths, JudgedHits& judged) {
     const Words d;
     const SignedHalves halves;
     const std::size_t lanes = hn::Lanes(d);
     const auto ends = hn::Set(d, CellEntry::end_bits), flags = hn::Set(d, CellEntry::flag_bits);
     const auto lower = hn::BitCast(halves, hn::Set(d, 0xFFFFu));
-    const auto none_certain = gaps.none_certain ? flags : hn::Zero(d);
+    const auto none_certain = depths.none_certain ? flags : hn::Zero(d);
     std::fill_n(hits.data() + hits.size(), lanes, 0u);
     Pair* pairs = judged.pairs + judged.pair_count;
     std::uint32_t* doubtful = judged.doubtful + judged.doubtful_count;
@@ -280,7 +282,7 @@ void judge_hits_simd(const CellSweep& sweep, std::span<CellHit> hits, const Cert
             const auto turned = hn::RotateRight<16>(hn::And(columns[k], ends));
             const auto difference = hn::Sub(hn::BitCast(halves, hn::And(rows[k], ends)), hn::BitCast(halves, turned));
             const auto depth = hn::Sub(hn::Xor(difference, lower), lower);
-            const auto over = hn::Sub(depth, hn::Set(halves, std::int16_t(gaps.cells[k])));
+            const auto over = hn::Sub(depth, hn::Set(halves, std::int16_t(depths.cells[k])));
             apart = hn::Or(apart, hn::Or(hn::BitCast(d, depth), hn::And(rows[k], columns[k])));
             doubts = hn::Or(doubts, hn::BitCast(d, over));
         }
@@ -371,17 +373,17 @@ HWY_AFTER_NAMESPACE();
 
 namespace octopair {
 
-HWY_EXPORT(cell_hits_simd);
+HWY_EXPORT(find_hits_simd);
 HWY_EXPORT(judge_hits_simd);
 HWY_EXPORT(cell_entries_simd);
 HWY_EXPORT(write_planes_simd);
 
-std::size_t cell_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
-    return HWY_DYNAMIC_DISPATCH(cell_hits_simd)(sweep, cursor, hits);
+std::size_t find_hits(const CellSweep& sweep, CellCursor& cursor, std::span<CellHit> hits) {
+    return HWY_DYNAMIC_DISPATCH(find_hits_simd)(sweep, cursor, hits);
 }
 
-void judge_hits(const CellSweep& sweep, std::span<CellHit> hits, const CertainGaps& gaps, JudgedHits& judged) {
-    HWY_DYNAMIC_DISPATCH(judge_hits_simd)(sweep, hits, gaps, judged);
+void judge_hits(const CellSweep& sweep, std::span<CellHit> hits, const CellDepths& depths, JudgedHits& judged) {
+    HWY_DYNAMIC_DISPATCH(judge_hits_simd)(sweep, hits, depths, judged);
 }
 
 void cell_entries(const OctantCells& cells, std::span<const Entry> entries, CellEntry* out) {

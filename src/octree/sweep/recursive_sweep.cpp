@@ -44,7 +44,7 @@ public:
     LoadedTile(const SortedTiles& tiles, unsigned axis) : tiles_(&tiles), axis_(axis) {}
 
     /// Loads a tile, unless it is the tile of the last call.
-    const SweepSet& load(std::size_t t) {
+    const BoxSet& load(std::size_t t) {
         if (t == loaded_) return set_;
         tiles_->entries.load(tile_of(tiles_->keys, t), entries_);
         set_.assign(entries_.span(), axis_);
@@ -57,7 +57,7 @@ private:
     unsigned axis_;
     std::size_t loaded_ = ~std::size_t(0);
     Buffer<Entry> entries_;
-    SweepSet set_;
+    BoxSet set_;
 };
 
 /// Sweep of tiles of rows, each against the tiles of columns that it reaches.
@@ -74,7 +74,7 @@ struct TileSweep {
         const std::size_t tiles = rows.size();
         const std::size_t share = std::clamp<std::size_t>(tiles / (shares_per_thread * executor.width()), 1, max_share);
         executor.for_each_writing((tiles + share - 1) / share, [&](std::size_t i, ShareWriter& writer) {
-            PairMaker maker(context, writer);
+            BoxPairMaker maker(context, writer);
             LoadedTile row_tile(rows, axis), column_tile(columns, axis);
             for (std::size_t t = i * share; t < std::min((i + 1) * share, tiles); ++t) {
                 sweep(t, row_tile.load(t), column_tile, maker);
@@ -89,7 +89,7 @@ private:
     static constexpr std::size_t shares_per_thread = 4, max_share = 8;
 
     /// Sweeps tile `t` of the rows.
-    void sweep(std::size_t t, const SweepSet& row_set, LoadedTile& column_tile, PairMaker& maker) const {
+    void sweep(std::size_t t, const BoxSet& row_set, LoadedTile& column_tile, BoxPairMaker& maker) const {
         float reach = -FLT_MAX;
         for (std::size_t i = 0; i < row_set.size(); ++i) reach = std::max(reach, row_set.high(0)[i]);
         std::size_t first = 0;
@@ -104,7 +104,7 @@ private:
             }
             const float begin = columns.begin(c);
             if (begin > reach || (planted(Fault::tile_end_open) && begin == reach)) break;
-            const SweepSet& column_set = column_tile.load(c);
+            const BoxSet& column_set = column_tile.load(c);
             maker.sweep({row_set, column_set, kind == SweepKind::self ? SweepKind::cross : kind}, orientation);
         }
     }

@@ -3,8 +3,8 @@
 //
 // Boxes with equal low ends
 //   in one list           are ordered by position (SortKey, StartOrder).
-//   in one octant         are ordered by position, too. There, boxes of a bucket of low ends count as equal (cell_sweep/cell_set.hpp).
-//   of rows and columns   count as if the row began first (SweepKind in sweep.hpp and cell_sweep/cell_sweep.hpp).
+//   in one octant         are ordered by position, too. There, boxes of a bucket of low ends count as equal (CellSet in cell_sweep.hpp).
+//   of rows and columns   count as if the row began first (SweepKind in sweep.hpp).
 //   in a recursive sweep  are ordered by object (comes_before()).
 //
 // Invariant

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "octree/sweep/box_sweep.hpp"
 #include "octree/sweep/entry_list.hpp"
-#include "octree/sweep/pair_maker.hpp"
 
 namespace octopair {
 

@@ -1,11 +1,11 @@
-// SIMD version of the sweep. Highway compiles it for each instruction set; one is chosen at run time.
+// SIMD versions of the functions of box_sweep.hpp. Highway compiles them for each instruction set; one is chosen at run time.
 //
 // A register of columns is tested against the rows of a block, one row after another. The number of columns differs from row to row, so
 // the processor mispredicts the end of a loop over columns. With blocks of 8 rows, this happens at most once for 8 rows.
 // Hits are queued as masks, without a branch on whether there are any. Dense scenes mispredict that branch: writing the pairs
 // separately from the sweep was 1.5 times faster there.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "octree/sweep/sweep_kernel.cpp"
+#define HWY_TARGET_INCLUDE "octree/sweep/box_sweep_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -19,7 +19,7 @@
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
 #include "boxes/simd_lanes-inl.hpp"
-#include "octree/sweep/sweep.hpp"
+#include "octree/sweep/box_sweep.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace octopair {
@@ -27,9 +27,11 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr std::size_t row_block = BoxSweep::row_block, column_group = BoxSweep::column_group;
+
 /// Pointers to the bounds of a set, from box `first` on: on the sweep's axis (0) and on the two other axes (1, 2).
 struct Bounds {
-    Bounds(const SweepSet& set, std::size_t first)
+    Bounds(const BoxSet& set, std::size_t first)
         : low0(set.low(0) + first),
           low1(set.low(1) + first),
           low2(set.low(2) + first),
@@ -70,9 +72,9 @@ HWY_INLINE V test_row(const Bounds& rows, std::size_t row, const Columns<D>& col
 
 /// Writes a mask for each column with a hit. Returns the number of masks.
 template <typename D, typename V>
-HWY_INLINE std::size_t queue_hits(D d, V columns, V rows, HitMask* hits) {
+HWY_INLINE std::size_t queue_hits(D d, V columns, V rows, BoxHits* hits) {
     const hn::Rebind<std::uint8_t, D> bytes;
-    const auto hit = hn::Ne(hn::And(rows, hn::Set(d, (1u << block_size) - 1)), hn::Zero(d));
+    const auto hit = hn::Ne(hn::And(rows, hn::Set(d, (1u << row_block) - 1)), hn::Zero(d));
     const std::uint32_t set = bits_of(d, hit);
     const auto lanes = hn::IndicesFromVec(d, hn::PromoteTo(d, hn::LoadU(bytes, lanes_in.of[set].data())));
     // All lanes are stored. The next store overwrites the lanes beyond the hits.
@@ -82,18 +84,18 @@ HWY_INLINE std::size_t queue_hits(D d, V columns, V rows, HitMask* hits) {
 }
 
 /// Clears the rows that share a bit of their mask with the column, and removes empty masks. Returns the number of masks left.
-std::size_t drop_shared(const Sweep& sweep, std::span<HitMask> hits) {
-    const hn::CappedTag<std::uint32_t, block_size> d;
-    HitMask* at = hits.data();
-    for (const HitMask hit : hits) {
+std::size_t drop_shared(const BoxSweep& sweep, std::span<BoxHits> hits) {
+    const hn::CappedTag<std::uint32_t, row_block> d;
+    BoxHits* at = hits.data();
+    for (const BoxHits hit : hits) {
         const auto column = hn::Set(d, sweep.columns.mask()[hit.column()]);
         const std::uint32_t* const rows = sweep.rows.mask() + hit.first_row();
         std::uint32_t apart = 0;
-        for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+        for (std::size_t lane = 0; lane < row_block; lane += hn::Lanes(d)) {
             apart |= bits_of(d, hn::Eq(hn::And(column, hn::LoadU(d, rows + lane)), hn::Zero(d))) << lane;
         }
         const std::uint32_t bits = hit.bits() & apart;
-        *at = HitMask(hit.column(), hit.first_row(), bits);
+        *at = BoxHits(hit.column(), hit.first_row(), bits);
         at += std::size_t(bits != 0);
     }
     return std::size_t(at - hits.data());
@@ -111,13 +113,13 @@ HWY_INLINE Reach reach_of(D d, const Bounds& rows) {
     constexpr float none = -std::numeric_limits<float>::infinity();
     const auto begin = hn::Set(d, rows.low0[0]);
     auto sum = hn::Zero(d);
-    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    for (std::size_t lane = 0; lane < row_block; lane += hn::Lanes(d)) {
         sum = hn::Add(sum, hn::Max(hn::Sub(hn::LoadU(d, rows.high0 + lane), begin), hn::Zero(d)));
     }
-    const auto twice_mean = hn::Mul(hn::SumOfLanes(d, sum), hn::Set(d, 2.0f / block_size));
+    const auto twice_mean = hn::Mul(hn::SumOfLanes(d, sum), hn::Set(d, 2.0f / row_block));
     auto most = hn::Set(d, none), all = most;
     Reach reach{};
-    for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+    for (std::size_t lane = 0; lane < row_block; lane += hn::Lanes(d)) {
         const auto highs = hn::LoadU(d, rows.high0 + lane);
         const auto far = hn::Gt(hn::Sub(highs, begin), twice_mean);
         reach.far |= bits_of(d, far) << lane;
@@ -133,28 +135,28 @@ HWY_INLINE Reach reach_of(D d, const Bounds& rows) {
 }
 
 /// For column k of the block itself: bit mask of the rows before the column.
-constexpr std::array<std::uint32_t, block_size> rows_before = {0x00, 0x01, 0x03, 0x07, 0x0F, 0x1F, 0x3F, 0x7F};
+constexpr std::array<std::uint32_t, row_block> rows_before = {0x00, 0x01, 0x03, 0x07, 0x0F, 0x1F, 0x3F, 0x7F};
 
 template <SweepKind kind>
-std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
+std::size_t find_hits_of(const BoxSweep& sweep, BoxCursor& cursor, std::span<BoxHits> hits) {
     if (cursor.row >= sweep.rows.size()) return 0;
-    const hn::CappedTag<float, max_columns> d;
+    const hn::CappedTag<float, column_group> d;
     const hn::RebindToUnsigned<decltype(d)> words;
     const float* const low0 = sweep.columns.low(0);
     const auto lane_numbers = hn::Iota(words, 0);
-    HitMask* hit_at = hits.data();
-    HitMask* const hits_end = hits.data() + (hits.size() - max_columns);
+    BoxHits* hit_at = hits.data();
+    BoxHits* const hits_end = hits.data() + (hits.size() - column_group);
     std::size_t tests_left = tuning().sweep.tests_per_call;
     Reach next = reach_of(d, Bounds(sweep.rows, cursor.row));
-    for (; cursor.row < sweep.rows.size(); cursor.row += block_size, cursor.in_row = false) {
+    for (; cursor.row < sweep.rows.size(); cursor.row += row_block, cursor.in_row = false) {
         start_rows(sweep, cursor);
         const std::uint32_t row = std::uint32_t(cursor.row);
         const Bounds rows(sweep.rows, row);
         const Reach reach = next;
-        next = reach_of(d, Bounds(sweep.rows, row + block_size));  // started early because of its latency
-        const auto block = hn::Set(words, row << block_size);
+        next = reach_of(d, Bounds(sweep.rows, row + row_block));  // started early because of its latency
+        const auto block = hn::Set(words, row << row_block);
         const auto queue = [&](auto bits, std::size_t column) HWY_ATTR {
-            if (kind == SweepKind::self && column < row + block_size) {
+            if (kind == SweepKind::self && column < row + row_block) {
                 bits = hn::And(bits, hn::LoadU(words, rows_before.data() + (column - row)));
             }
             hit_at += queue_hits(words, hn::Add(lane_numbers, hn::Set(words, std::uint32_t(column))),
@@ -165,7 +167,7 @@ std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<Hit
         for (; low0[column] <= reach.most && hit_at <= hits_end && tests_left > 0; column += hn::Lanes(d)) {
             const Columns columns(d, Bounds(sweep.columns, column));
             auto bits = hn::Zero(words);
-            for (std::size_t i = 0; i < block_size; ++i) bits = test_row<kind>(rows, i, columns, bits);
+            for (std::size_t i = 0; i < row_block; ++i) bits = test_row<kind>(rows, i, columns, bits);
             queue(bits, column);
             --tests_left;
         }
@@ -186,19 +188,19 @@ std::size_t sweep_rows_of(const Sweep& sweep, SweepCursor& cursor, std::span<Hit
     return drop_shared(sweep, {hits.data(), hit_at});
 }
 
-std::size_t sweep_rows_simd(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
+std::size_t find_hits_simd(const BoxSweep& sweep, BoxCursor& cursor, std::span<BoxHits> hits) {
     switch (sweep.kind) {
         case SweepKind::self:
-            return sweep_rows_of<SweepKind::self>(sweep, cursor, hits);
+            return find_hits_of<SweepKind::self>(sweep, cursor, hits);
         case SweepKind::cross:
-            return sweep_rows_of<SweepKind::cross>(sweep, cursor, hits);
+            return find_hits_of<SweepKind::cross>(sweep, cursor, hits);
         default:
-            return sweep_rows_of<SweepKind::cross_strict>(sweep, cursor, hits);
+            return find_hits_of<SweepKind::cross_strict>(sweep, cursor, hits);
     }
 }
 
-std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin,
-                               Pair* pairs) {
+std::size_t write_pairs_simd(const BoxSweep& sweep, std::span<const BoxHits> hits, std::uint32_t second_begin,
+                             Pair* pairs) {
     const hn::CappedTag<std::uint32_t, LaneTable::lanes> d;
     const hn::Rebind<std::uint8_t, decltype(d)> bytes;
     const auto offset = hn::Set(d, second_begin);
@@ -206,7 +208,7 @@ std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits
     const std::uint32_t* const columns = sweep.columns.object();
     std::uint32_t* const begin = reinterpret_cast<std::uint32_t*>(pairs);
     std::uint32_t* at = begin;
-    for (const HitMask& hit : hits) {
+    for (const BoxHits& hit : hits) {
         const auto column = hn::Set(d, columns[hit.column()]);
         const std::uint32_t* row = rows + hit.first_row();
         const std::size_t lane_count = hn::Lanes(d);
@@ -225,7 +227,7 @@ std::size_t pairs_of_hits_simd(const Sweep& sweep, std::span<const HitMask> hits
 
 /// Returns the largest absolute value.
 float largest_of(std::span<const float> numbers) {
-    const hn::CappedTag<float, block_size> d;
+    const hn::CappedTag<float, row_block> d;
     auto most = hn::Zero(d);
     std::size_t i = 0;
     for (; i + hn::Lanes(d) <= numbers.size(); i += hn::Lanes(d)) {
@@ -237,7 +239,7 @@ float largest_of(std::span<const float> numbers) {
 }
 
 /// Returns the largest absolute bound of a set on each axis of the sweep.
-Depths largest_bounds_simd(const SweepSet& set) {
+Depths largest_bounds_simd(const BoxSet& set) {
     Depths largest;
     for (unsigned k = 0; k < 3; ++k) {
         largest[k] = std::max(largest_of({set.low(k), set.size()}), largest_of({set.high(k), set.size()}));
@@ -245,11 +247,13 @@ Depths largest_bounds_simd(const SweepSet& set) {
     return largest;
 }
 
-void keep_deep_simd(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits) {
-    const hn::CappedTag<float, block_size> d;
-    for (HitMask& hit : hits) {
+void judge_hits_simd(const BoxSweep& sweep, std::span<const BoxHits> hits, const Depths& depths,
+                     std::span<BoxHits> doubtful) {
+    const hn::CappedTag<float, row_block> d;
+    BoxHits* at = doubtful.data();
+    for (const BoxHits& hit : hits) {
         std::uint32_t bits = 0;
-        for (std::size_t lane = 0; lane < block_size; lane += hn::Lanes(d)) {
+        for (std::size_t lane = 0; lane < row_block; lane += hn::Lanes(d)) {
             const std::size_t row = hit.first_row() + lane;
             auto deep = hn::FirstN(d, hn::Lanes(d));
             for (unsigned k = 0; k < 3; ++k) {
@@ -261,7 +265,7 @@ void keep_deep_simd(const Sweep& sweep, const Depths& depths, std::span<HitMask>
             }
             bits |= bits_of(d, deep) << lane;
         }
-        hit.keep(bits);
+        *at++ = BoxHits(hit.column(), hit.first_row(), hit.bits() & ~bits);
     }
 }
 
@@ -313,21 +317,21 @@ HWY_AFTER_NAMESPACE();
 
 namespace octopair {
 
-HWY_EXPORT(sweep_rows_simd);
-HWY_EXPORT(pairs_of_hits_simd);
+HWY_EXPORT(find_hits_simd);
+HWY_EXPORT(write_pairs_simd);
 HWY_EXPORT(largest_bounds_simd);
-HWY_EXPORT(keep_deep_simd);
+HWY_EXPORT(judge_hits_simd);
 HWY_EXPORT(split_entries_simd);
 
-std::size_t sweep_rows(const Sweep& sweep, SweepCursor& cursor, std::span<HitMask> hits) {
-    return HWY_DYNAMIC_DISPATCH(sweep_rows_simd)(sweep, cursor, hits);
+std::size_t find_hits(const BoxSweep& sweep, BoxCursor& cursor, std::span<BoxHits> hits) {
+    return HWY_DYNAMIC_DISPATCH(find_hits_simd)(sweep, cursor, hits);
 }
 
-std::size_t pairs_of_hits(const Sweep& sweep, std::span<const HitMask> hits, std::uint32_t second_begin, Pair* pairs) {
-    return HWY_DYNAMIC_DISPATCH(pairs_of_hits_simd)(sweep, hits, second_begin, pairs);
+std::size_t write_pairs(const BoxSweep& sweep, std::span<const BoxHits> hits, std::uint32_t second_begin, Pair* pairs) {
+    return HWY_DYNAMIC_DISPATCH(write_pairs_simd)(sweep, hits, second_begin, pairs);
 }
 
-Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack) {
+Depths certain_depths(const BoxSweep& sweep, const RoundingSlack& slack) {
     const Depths rows = HWY_DYNAMIC_DISPATCH(largest_bounds_simd)(sweep.rows);
     const Depths columns =
         sweep.kind == SweepKind::self ? rows : HWY_DYNAMIC_DISPATCH(largest_bounds_simd)(sweep.columns);
@@ -339,23 +343,13 @@ Depths certain_depths(const Sweep& sweep, const RoundingSlack& slack) {
     return depths;
 }
 
-void keep_deep(const Sweep& sweep, const Depths& depths, std::span<HitMask> hits) {
-    HWY_DYNAMIC_DISPATCH(keep_deep_simd)(sweep, depths, hits);
+void judge_hits(const BoxSweep& sweep, std::span<const BoxHits> hits, const Depths& depths,
+                std::span<BoxHits> doubtful) {
+    HWY_DYNAMIC_DISPATCH(judge_hits_simd)(sweep, hits, depths, doubtful);
 }
 
 void split_entries(std::span<const Entry> entries, const EntryArrays& arrays) {
     HWY_DYNAMIC_DISPATCH(split_entries_simd)(entries, arrays);
-}
-
-std::string sweep_instruction_set() {
-    // The best of the supported targets is the one with the lowest bit set.
-    const auto supported = hwy::SupportedTargets();
-    return hwy::TargetName(supported & (~supported + 1));
-}
-
-void restrict_sweep_to_baseline(bool baseline_only) {
-    hwy::DisableTargets(baseline_only ? ~(HWY_STATIC_TARGET) : 0);
-    hwy::GetChosenTarget().DeInit();
 }
 
 }  // namespace octopair
