@@ -22,7 +22,7 @@
 #include "octopair/summary.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
-#include "octree/scan/scan_memory.hpp"
+#include "octree/scan/scan.hpp"
 #include "parallel/team.hpp"
 #include "scene/change_search.hpp"
 #include "scene/exact_pairs.hpp"

@@ -11,7 +11,6 @@
 #include "octopair/error.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/scan/scan.hpp"
-#include "octree/scan/scan_memory.hpp"
 #include "samples/random.hpp"
 #include "support/families.hpp"
 #include "support/hostile_boxes.hpp"

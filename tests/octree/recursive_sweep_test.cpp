@@ -11,7 +11,7 @@
 #include "baselines/baselines.hpp"
 #include "octopair/error.hpp"
 #include "octree/given_source.hpp"
-#include "octree/scan/scan_memory.hpp"
+#include "octree/scan/scan.hpp"
 #include "octree/sweep/start_order.hpp"
 #include "support/errors.hpp"
 

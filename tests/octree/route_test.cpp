@@ -58,7 +58,8 @@ TEST(Route, ThreeBoxesBecomeOnePair) {
     std::array<Pair, 1 + judged_room> pairs;
     std::array<std::uint32_t, 1 + judged_room> doubtful;
     JudgedHits judged{.pairs = pairs.data(), .doubtful = doubtful.data()};
-    judge_hits(sweep, std::span(hits).first(1), certain_depths(OctantCells(space, octree.octants()[0]), source), judged);
+    judge_hits(sweep, std::span(hits).first(1), certain_depths(OctantCells(space, octree.octants()[0]), source),
+               judged);
     EXPECT_EQ(judged.doubtful_count, 0u);
     ASSERT_EQ(judged.pair_count, 1u);
     EXPECT_EQ(pairs[0], (Pair{0, 1}));

@@ -1,5 +1,5 @@
 // Tests ScanMemoryPool: who gets which memory.
-#include "octree/scan/scan_memory.hpp"
+#include "octree/scan/scan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,6 @@
 #include "engine/threads/team_output.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/scan/scan.hpp"
-#include "octree/scan/scan_memory.hpp"
 #include "parallel/team.hpp"
 
 namespace octopair {

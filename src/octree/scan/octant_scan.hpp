@@ -1,19 +1,31 @@
 // OctantScan: finds the pairs that an octant reports, by sweeps on cells or as a crowd (crowd.hpp).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "octree/build/linear_octree.hpp"
 #include "octree/executor.hpp"
 #include "octree/plan/octant_cells.hpp"
 #include "octree/scan/crowd.hpp"
-#include "octree/scan/scan_memory.hpp"
 #include "octree/sweep/cell_sweep.hpp"
 
 namespace octopair {
+
+/// Memory that one share at a time uses to sweep octants. Octants that are too large for one sweep use other memory. The contents are
+/// undefined when the pool lends the memory.
+struct ScanMemory {
+    using Runs = std::vector<std::span<const CellEntry>>;
+    Runs runs, next_runs;                                 // entries of the scanned octant, and of the next octant
+    CellSet own_set, handed_set;                          // own entries, and entries handed down, ready for a sweep
+    std::vector<CellEntry> handed_cells;                  // entries handed down, with cells of the octant
+    std::array<std::vector<CellEntry>, 4> cells_of_part;  // entries of a join, by OctantPart::number()
+    CellPairMaker::Memory pair_maker;
+};
 
 /// Scans single octants.
 /// Thread safety: one thread at a time.

@@ -11,6 +11,26 @@
 
 namespace octopair {
 
+ScanMemoryPool::ScanMemoryPool() = default;
+ScanMemoryPool::~ScanMemoryPool() = default;
+
+ScanMemoryPool::Lent ScanMemoryPool::lend() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) {
+        free_.reserve(allocated_ + 1);  // so that give_back() needs no memory
+        free_.push_back(std::make_unique<ScanMemory>());
+        ++allocated_;
+    }
+    Lent lent(free_.back().release(), GiveBack{this});
+    free_.pop_back();
+    return lent;
+}
+
+void ScanMemoryPool::give_back(ScanMemory* memory) noexcept {
+    const std::lock_guard lock(mutex_);
+    free_.emplace_back(memory);
+}
+
 namespace {
 
 /// A run of octants in pre-order that is scanned as one share. A large octant is a share alone.

@@ -12,7 +12,12 @@
 // Source: Lucchesi, Egbert, Harris 2014, section 3.3, step 7.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
 
 #include "octree/build/linear_octree.hpp"
 #include "octree/executor.hpp"
@@ -29,6 +34,34 @@ struct OctreeRange {
 
     const LinearOctree& octree;
     OctantIndex begin, end;
+};
+
+struct ScanMemory;
+
+/// Keeps the arrays that a scan of octants fills (octant_scan.hpp) allocated between scans.
+/// Thread safety: any thread may call it.
+class OCTOPAIR_PRIVATE_EXPORT ScanMemoryPool {
+    struct GiveBack {
+        ScanMemoryPool* pool;
+        void operator()(ScanMemory* memory) const noexcept { pool->give_back(memory); }
+    };
+
+public:
+    ScanMemoryPool();
+    ~ScanMemoryPool();
+
+    /// Memory that the pool lends. Its destructor gives the memory back to the pool. Requires: the pool still exists then.
+    using Lent = std::unique_ptr<ScanMemory, GiveBack>;
+
+    /// Returns free memory with undefined contents, or allocates memory if none is free. Throws: std::bad_alloc.
+    Lent lend();
+
+private:
+    void give_back(ScanMemory* memory) noexcept;
+
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<ScanMemory>> free_;
+    std::size_t allocated_ = 0;  // number of all ScanMemory objects, free and lent
 };
 
 /// Writes the pairs that `octants` report, in pre-order of octants. From octants outside the range, reads only the entries

@@ -11,7 +11,7 @@
 #include "engine/processes/worker/worker_place.hpp"
 #include "engine/processes/worker/worker_regions.hpp"
 #include "octree/build/linear_octree.hpp"
-#include "octree/scan/scan_memory.hpp"
+#include "octree/scan/scan.hpp"
 
 namespace octopair {
 
