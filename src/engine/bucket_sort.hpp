@@ -1,11 +1,12 @@
 // BucketSort: sorts pairs into ascending order (by a, then b) with one bucket for each range of neighbouring `a`.
 //
 // 1. Each thread or worker scatters the pairs that it finds into its own buckets. A bucket is a PageString: an array of pairs that grows
-//    by pages, which have a fixed size and later form a list.
+//    by pages (engine/pair_pages.hpp), which have a fixed size and later form a list.
 // 2. Each bucket is gathered from all threads or workers and sorted independently, by one of three ways:
 //      few pairs for its rows   the pairs are sorted as they are
 //      mostly short rows        the objects `b` of a row are put into slots, and sorted by networks (boxes/slotted_rows.hpp)
 //      otherwise                pairs are counted by `a` and moved to their rows, then the objects `b` of each row are sorted
+//                               (engine/counted_rows.hpp)
 //
 // Invariants
 //   Every key in bucket i is less than every key in bucket i + 1.
@@ -13,135 +14,21 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <stop_token>
 #include <utility>
 #include <vector>
 
-#include "base/memory.hpp"
-#include "base/radix_sort.hpp"
 #include "base/tuning.hpp"
 #include "boxes/slotted_rows.hpp"
+#include "engine/counted_rows.hpp"
+#include "engine/pair_pages.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
-
-/// Returns the capacity of a page in pairs.
-inline std::size_t page_pairs() { return tuning().output.page; }
-
-/// Thrown by a pass that needs more pages than its budget allows. At most a quarter of its pages are then partly filled.
-struct OverBudget {};
-
-/// Number of pages that all threads or workers of a pass together may still take. Also counts the pages that one thread or worker took.
-/// Thread safety: any thread.
-class PageBudget {
-public:
-    /// Borrows both numbers, which may be in shared memory.
-    PageBudget(std::atomic<std::int64_t>& left, std::atomic<std::uint64_t>& taken) : left_(&left), taken_(&taken) {}
-
-    /// Throws: OverBudget.
-    void take_page() {
-        if (ended_) return;
-        taken_->fetch_add(1);
-        if (left_->fetch_sub(1) <= 0) throw OverBudget{};
-    }
-    std::uint64_t taken() const { return taken_->load(); }
-    /// Sets the number of pages that were taken, and returns the difference to the pages that are left.
-    void restore(std::uint64_t taken) { left_->fetch_add(std::int64_t(taken_->exchange(taken) - taken)); }
-    /// From now on, pages are not limited: sorting a bucket takes more pages than it returns, if the bucket is split.
-    void end() { ended_ = true; }
-
-private:
-    std::atomic<std::int64_t>* left_;
-    std::atomic<std::uint64_t>* taken_;
-    bool ended_ = false;
-};
-
-/// Page allocator of one thread or worker, with a free list.
-class Pages {
-public:
-    /// `next_block` returns memory for at least one page. Borrows the budget.
-    Pages(std::function<std::span<Pair>()> next_block, PageBudget& budget)
-        : next_block_(std::move(next_block)), budget_(budget) {}
-
-    /// Throws: OverBudget.
-    Pair* take() {
-        if (returned_.empty()) return fresh();
-        Pair* page = returned_.back();
-        returned_.pop_back();
-        return page;
-    }
-    void give_back(Pair* page) { returned_.push_back(page); }
-
-private:
-    Pair* fresh() {
-        budget_.take_page();
-        if (block_.size() < page_pairs()) block_ = next_block_();
-        Pair* const page = block_.data();
-        block_ = block_.subspan(page_pairs());
-        return page;
-    }
-
-    std::function<std::span<Pair>()> next_block_;
-    PageBudget& budget_;
-    std::span<Pair> block_;
-    std::vector<Pair*> returned_;
-};
-
-/// A growing array of pairs in pages. All pages but the last are full.
-class PageString {
-public:
-    PageString() = default;
-    /// Requires: `pages` is exactly as long as `size` pairs need.
-    PageString(std::vector<Pair*> pages, std::size_t size) : pages_(std::move(pages)) {
-        if (pages_.empty()) return;
-        end_ = pages_.back() + page_pairs();
-        next_ = end_ - (pages_.size() * page_pairs() - size);
-    }
-
-    void add(const Pair& pair, Pages& pages) {
-        if (next_ == end_) grow(pages);
-        prefetch(next_ + prefetched);
-        *next_++ = pair;
-    }
-
-    std::size_t size() const { return pages_.size() * page_pairs() - std::size_t(end_ - next_); }
-    std::span<Pair* const> pages() const { return pages_; }
-    std::span<Pair> page(std::size_t i) const { return {pages_[i], std::min(page_pairs(), size() - i * page_pairs())}; }
-
-private:
-    static constexpr std::size_t prefetched = 12;  // pairs: the cache line after the current one
-
-    void grow(Pages& pages) {
-        next_ = pages.take();
-        end_ = next_ + page_pairs();
-        pages_.push_back(next_);
-    }
-
-    std::vector<Pair*> pages_;
-    Pair* next_ = nullptr;
-    Pair* end_ = nullptr;
-};
-
-/// Returns the number of pairs in all strings.
-inline std::uint64_t pairs_in(std::span<const PageString> strings) {
-    std::uint64_t pairs = 0;
-    for (const PageString& string : strings) pairs += string.size();
-    return pairs;
-}
-
-/// Takes the strings of one bucket from the buckets of all threads or workers.
-inline std::vector<PageString> take_bucket(std::span<std::vector<PageString>> of_fillers, std::size_t bucket) {
-    std::vector<PageString> strings;
-    strings.reserve(of_fillers.size());
-    for (auto& buckets : of_fillers) strings.push_back(std::exchange(buckets[bucket], {}));
-    return strings;
-}
 
 /// Objects [begin, end).
 struct ObjectRange {
@@ -211,11 +98,19 @@ private:
     unsigned bits_;
 };
 
+/// Takes the strings of one bucket from the buckets of all threads or workers.
+inline std::vector<PageString> take_bucket(std::span<std::vector<PageString>> of_fillers, std::size_t bucket) {
+    std::vector<PageString> strings;
+    strings.reserve(of_fillers.size());
+    for (auto& buckets : of_fillers) strings.push_back(std::exchange(buckets[bucket], {}));
+    return strings;
+}
+
 /// Sorts the pairs of one bucket at a time. Keeps its memory for the next bucket.
 /// Thread safety: one thread at a time.
 class BucketSort {
 public:
-    using Runs = std::vector<std::span<const Pair>>;
+    using Runs = PageWriter::Runs;
     BucketSort(const BucketPlan& plan, Pages& pages) : plan_(plan), pages_(pages) {}
 
     /// Returns the sorted pairs as runs in pages. Each input page returns to the pages' free list as soon as it is read. If
@@ -227,32 +122,17 @@ private:
     struct CallState;
     void sort(std::vector<PageString>&& strings, unsigned bits, CallState& state);
     void split(std::vector<PageString>&& strings, unsigned bits, CallState& state);
-    class PageWriter;
-    /// Rows of a bucket: positions behind their last columns in `columns_`, and the object `a` of the first row.
-    struct Rows {
-        std::span<const std::uint32_t> ends;
-        std::uint64_t first;
-    };
     void sort_sparse(const std::vector<PageString>& strings, CallState& state);
     void sort_in_slots(const std::vector<PageString>& strings, unsigned bits, CallState& state);
     void write_group(std::size_t first_row, unsigned bits, PageWriter& writer);
-    void write_long_row(std::size_t row, unsigned bits, PageWriter& writer);
-    void sort_rows_at_once(const std::vector<PageString>& strings, unsigned bits, CallState& state);
-    void write_rows(const Rows& rows, unsigned bits, CallState& state);
-    void write_row(std::uint32_t row, std::span<const std::uint32_t> columns, unsigned bits, PageWriter& writer);
-    std::span<const std::uint32_t> sorted_columns(std::span<const std::uint32_t> columns, unsigned bits);
-    void mark_columns(std::span<const std::uint32_t> columns, std::uint32_t least, std::uint32_t greatest);
-    std::size_t read_marks(std::uint32_t least, std::uint32_t* columns) const;
+    void sort_counted(const std::vector<PageString>& strings, unsigned bits, CallState& state);
 
     const BucketPlan& plan_;
     Pages& pages_;
-    std::vector<Pair> sparse_;             // pairs of a bucket with many empty rows
-    SlottedRows slotted_;                  // pairs of a bucket with short rows
-    std::vector<Pair> staged_;             // short rows of a group that has a long row, or does not fit into the page
-    Buffer<std::uint32_t> columns_;        // objects `b` of a bucket, row by row
-    std::vector<std::uint32_t> row_ends_;  // by row of a bucket: position behind its last column; then second counters
-    std::vector<std::uint64_t> bitmap_;    // columns of a long row
-    RadixSort<std::uint32_t> radix_;       // sorts a long row
+    std::vector<Pair> sparse_;  // pairs of a bucket with many empty rows
+    SlottedRows slotted_;       // pairs of a bucket with short rows
+    std::vector<Pair> staged_;  // short rows of a group that has a long row, or does not fit into the page
+    CountedRows counted_;       // other pairs, and long rows of slotted_
 };
 
 }  // namespace octopair

@@ -23,6 +23,7 @@
 
 #include "base/test_hooks.hpp"
 #include "engine/bucket_sort.hpp"
+#include "engine/pair_pages.hpp"
 #include "octopair/error.hpp"
 #include "octree/executor.hpp"
 
