@@ -334,8 +334,9 @@ void cell_entries_of(const OctantCells& cells, std::span<const Entry> entries, C
         const auto low = hn::TableLookupLanes(cell(hn::LoadU(floats, entry.min)), order);
         const auto high = hn::TableLookupLanes(cell(hn::LoadU(floats, entry.max)), order);
         const auto mask = hn::Set(words, entry.mask);
-        const auto flags = hn::Or(hn::IfThenElseZero(hn::TestBit(mask, class_lanes), hn::Set(words, 1u << 15)),
-                                  hn::IfThenElseZero(hn::TestBit(mask, set_lanes), hn::Set(words, 1u << 31)));
+        const auto flags =
+            hn::Or(hn::IfThenElseZero(hn::TestBit(mask, class_lanes), hn::Set(words, CellEntry::class_bit)),
+                   hn::IfThenElseZero(hn::TestBit(mask, set_lanes), hn::Set(words, 1u << CellEntry::set_shift)));
         hn::Store(hn::Or(hn::Or(low, hn::ShiftLeft<16>(high)), flags), words, out->ends.data());
         out++->object = entry.object;
     }

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 
-#include "boxes/box_kernel.hpp"
 #include "octopair/queries.hpp"
 #include "scene/queries/box_distance.hpp"
 
