@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <variant>
 
 #include "boxes/box_check.hpp"
 #include "boxes/entry.hpp"
@@ -16,6 +17,11 @@ template <typename Real>
 Box3d wide(const Box<Real>& box) {
     return {{double(box.min[0]), double(box.min[1]), double(box.min[2])},
             {double(box.max[0]), double(box.max[1]), double(box.max[2])}};
+}
+
+/// Returns a box of a set in float64.
+inline Box3d wide_box(const Objects& set, std::size_t index) {
+    return std::visit([&](auto boxes) { return wide(boxes[index]); }, set.boxes);
 }
 
 /// True if the closed boxes overlap.

@@ -3,32 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cfloat>
-#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <string>
+#include <variant>
 #include <vector>
 
 #include "base/memory.hpp"
 #include "boxes/box_kernel.hpp"
-#include "octopair/error.hpp"
 
 namespace octopair {
 
 namespace {
 
-constexpr const char* axis_names = "xyz";
-
-std::string number_text(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    return {text, end};
-}
-
-bool holds_float32(const Objects& set) { return std::holds_alternative<std::span<const Box3f>>(set.boxes); }
-
-Box3d wide_box(const Objects& set, std::size_t index) {
-    return std::visit([&](auto boxes) { return wide(boxes[index]); }, set.boxes);
+/// True if the boxes of `set` are float32 without padding.
+bool is_plain(const Objects& set) {
+    return std::holds_alternative<std::span<const Box3f>>(set.boxes) && set.padding.empty();
 }
 
 /// Returns the padding of the objects [begin, begin + count), or none if no object has padding.
@@ -37,23 +26,6 @@ std::span<const double> part_of(std::span<const double> padding, std::size_t beg
 }
 
 }  // namespace
-
-bool is_plain(const Objects& set) { return holds_float32(set) && set.padding.empty(); }
-
-std::array<double, 4> OriginSample::median(std::span<const Corner> corners) {
-    std::array<double, 4> origin = {0, 0, 0, 0};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        std::vector<double> lows;
-        for (const Corner& corner : corners) {
-            if (std::abs(corner[axis]) <= DBL_MAX) lows.push_back(corner[axis]);
-        }
-        if (lows.empty()) continue;
-        const auto middle = lows.begin() + std::ptrdiff_t(lows.size() / 2);
-        std::nth_element(lows.begin(), middle, lows.end());
-        origin[axis] = *middle;
-    }
-    return origin;
-}
 
 BoxSource::BoxSource(const Objects& first, const Objects* second, const EntryForm& form)
     : first_(&first),
@@ -249,41 +221,8 @@ void BoxSource::pick(std::span<const std::size_t> positions, std::span<Entry> ou
     }
 }
 
-std::optional<std::string> BoxSource::fault(std::size_t position, const SetBegins& begins) const {
-    const bool in_first = position < first_size_;
-    const Objects& set = in_first ? *first_ : *second_;
-    const std::size_t index = in_first ? position : position - first_size_;
-    const std::string which = in_first ? "object " + std::to_string(begins.first + index)
-                                       : "second set: object " + std::to_string(begins.second + index);
-    const Box3d box = wide_box(set, index);
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::string name(1, axis_names[axis]);
-        for (const auto& [value, end] : {std::pair{box.min[axis], "min "}, std::pair{box.max[axis], "max "}}) {
-            if (!std::isfinite(value))
-                return which + ": " + end + name + " is " + number_text(value) + ", not a finite number";
-        }
-        if (box.min[axis] > box.max[axis]) {
-            return which + ": min " + name + " " + number_text(box.min[axis]) + " is above max " + name + " " +
-                   number_text(box.max[axis]);
-        }
-    }
-    if (!set.padding.empty() && !is_padding(set.padding[index])) {
-        return which + ": padding is " + number_text(set.padding[index]) + ", not a finite number >= 0";
-    }
-    return std::nullopt;
-}
-
 void BoxSource::refuse(std::size_t begin, const SetBegins& begins) const {
-    for (std::size_t i = begin; i < size(); ++i) {
-        if (const auto found = fault(i, begins)) {
-            const bool in_first = i < first_size_;
-            const std::uint64_t index = in_first ? begins.first + i : begins.second + (i - first_size_);
-            throw PlacedError(ErrorCode::bad_input, *found, {.index = index, .set = in_first ? 0u : 1u, .frame = {}});
-        }
-    }
-    throw_object_changed();
+    throw_invalid_box(*first_, second_, begin, begins);
 }
-
-void throw_object_changed() { throw Error(ErrorCode::bad_input, "an object changed while it was read"); }
 
 }  // namespace octopair

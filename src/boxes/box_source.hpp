@@ -9,16 +9,15 @@
 //   A number that decides the size of an array is read only once. Code that reads a number again accepts any value, also NaN.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <string>
 
 #include "base/private_export.hpp"
 #include "boxes/entry.hpp"
 #include "boxes/entry_source.hpp"
+#include "boxes/invalid_box.hpp"
+#include "boxes/origin_sample.hpp"
 #include "boxes/outward_rounding.hpp"
 #include "octopair/objects.hpp"
 
@@ -29,32 +28,6 @@ struct EntryForm {
     bool exact = true;         ///< bounds are copied unchanged
     OutwardRounding rounding;  ///< used if not `exact`
 };
-
-/// True if the boxes of `set` are float32 without padding.
-bool is_plain(const Objects& set);
-
-/// Positions of the objects that give the origin of outward rounding: the median of their low corners. The median is near the
-/// bulk of the objects, even if a few objects are far away.
-struct OCTOPAIR_PRIVATE_EXPORT OriginSample {
-    using Corner = std::array<double, 3>;
-    std::size_t objects;
-
-    std::size_t size() const { return objects < most ? objects : most; }
-    std::size_t operator[](std::size_t i) const { return i * objects / size(); }
-    /// Ignores coordinates that are not finite. Returns 0 on an axis without finite coordinates.
-    static std::array<double, 4> median(std::span<const Corner> corners);
-
-private:
-    static constexpr std::size_t most = 255;
-};
-
-/// Index of the first object of each set, if this process has only a part of the sets. Error messages add this index to their own.
-struct SetBegins {
-    std::uint64_t first = 0, second = 0;
-};
-
-/// Throws: Error{bad_input} for an object that was a valid box when it was read before.
-[[noreturn]] OCTOPAIR_PRIVATE_EXPORT void throw_object_changed();
 
 class OCTOPAIR_PRIVATE_EXPORT BoxSource final : public EntrySource {
 public:
@@ -87,7 +60,6 @@ private:
     template <typename Real>
     bool load_set(std::span<const Box<Real>> boxes, std::span<const double> padding, std::size_t begin,
                   std::span<Entry> out) const;
-    std::optional<std::string> fault(std::size_t position, const SetBegins& begins) const;
     Box3d box(std::uint32_t object, double& padding) const;
 
     const Objects* first_;

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "boxes/origin_sample.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "octopair/error.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "base/test_hooks.hpp"
 #include "base/timed.hpp"
+#include "boxes/invalid_box.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/relay.hpp"
 #include "engine/mpi/joint_call.hpp"

@@ -9,7 +9,7 @@
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
-#include "boxes/box_source.hpp"
+#include "boxes/invalid_box.hpp"
 #include "octree/sweep/start_order.hpp"
 
 namespace octopair {
