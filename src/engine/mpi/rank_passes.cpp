@@ -72,9 +72,9 @@ void RankExecutor::for_each_writing(std::size_t count, const std::function<void(
 }
 
 RankPasses::RankPasses(unsigned threads)
-    : ThreadPasses(threads, [this](Call& call, Executor& executor, double progress) {
-          RankExecutor wanted(executor, *stops_, wanted_);
-          scan_octants(call, {octree(), share_.begin, share_.end}, searched(call), wanted, progress);
+    : ThreadPasses(threads, [this](const ThreadScan& pass) {
+          RankExecutor wanted(pass.executor, *stops_, wanted_);
+          scan_octants({pass.call, wanted, pass.progress}, {octree(), share_.begin, share_.end}, searched(pass.call));
       }) {}
 
 void RankPasses::build(Call& call, double progress) {

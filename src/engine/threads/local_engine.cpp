@@ -12,9 +12,7 @@ namespace {
 class LocalPasses final : public ThreadPasses {
 public:
     explicit LocalPasses(unsigned threads)
-        : ThreadPasses(threads, [this](Call& call, Executor& executor, double progress) {
-              scan_octants(call, octree(), call.source, executor, progress);
-          }) {}
+        : ThreadPasses(threads, [this](const ThreadScan& pass) { scan_octants(pass, octree(), pass.call.source); }) {}
 
     void build(Call& call, double progress) {
         TeamExecutor executor(team());

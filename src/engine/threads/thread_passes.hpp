@@ -15,10 +15,17 @@
 
 namespace octopair {
 
+/// One scan: writes pairs in shares of the executor, and advances the progress of the call to the fraction `progress`.
+struct ThreadScan {
+    Call& call;
+    Executor& executor;
+    double progress;
+};
+
 class ThreadPasses {
 public:
-    /// Scans once: writes pairs in shares of the executor, and advances the progress to a fraction.
-    using Scan = std::function<void(Call&, Executor&, double progress)>;
+    using Scan = std::function<void(const ThreadScan&)>;
+    /// `scan` calls scan_octants().
     ThreadPasses(unsigned threads, Scan scan) : team_(threads), scan_(std::move(scan)) {}
 
     unsigned width() const { return team_.threads(); }
@@ -55,16 +62,16 @@ protected:
         call.summary.steps.count = octree_.seconds().count;
     }
     /// Scans `octants` of the octree, which was built of `source`.
-    void scan_octants(Call& call, const OctreeRange& octants, const EntrySource& source, Executor& executor,
-                      double progress) {
+    void scan_octants(const ThreadScan& pass, const OctreeRange& octants, const EntrySource& source) {
+        Call& call = pass.call;
         const Timed timed(call.summary.steps.scan);
-        call.progress.stage(progress, octants.octree.entry_count(octants.begin, octants.end));
-        scan(octants, {source, call.stop.get_token(), scan_memory_}, executor,
+        call.progress.stage(pass.progress, octants.octree.entry_count(octants.begin, octants.end));
+        scan(octants, {source, call.stop.get_token(), scan_memory_}, pass.executor,
              [&](std::uint64_t entries) { call.progress.add(entries); });
     }
 
     FindPairs once(Call& call, double progress) {
-        return [this, &call, progress](Executor& executor) { scan_(call, executor, progress); };
+        return [this, &call, progress](Executor& executor) { scan_({call, executor, progress}); };
     }
 
 private:
