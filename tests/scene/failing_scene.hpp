@@ -129,13 +129,17 @@ private:
     /// Returns a number that is often small.
     std::uint64_t some_number() { return random_() % (std::uint64_t(1) << random_() % 8); }
 
-    /// Makes a call, after attempts that fail. Returns the result of the first attempt that succeeds.
+    /// Makes a call, after attempts that fail. Returns the result of the first attempt that succeeds. The first attempt of the first step is
+    /// refused memory for pairs: later steps rarely need more, so chance alone may refuse none.
     template <typename Call>
     std::invoke_result_t<Call> make(Call&& call, bool is_step = false) {
-        while (chance(failing_)) {
+        bool refused = is_step && failing_ > 0 && !std::exchange(stepped_, true);
+        while (refused || chance(failing_)) {
             const Contents before = contents();
             try {
-                return disturbed(call, is_step);
+                if (std::exchange(refused, false)) return disturbed(call, Disturbance::refusal, 0);
+                const auto what = Disturbance(random_() % (is_step ? 4 : 2));
+                return disturbed(call, what, some_number());
             } catch (const std::bad_alloc&) {
                 ++failures_.allocations;
             } catch (const Refused&) {
@@ -153,20 +157,21 @@ private:
         return call();
     }
 
-    /// Makes a call in which something may fail.
+    enum class Disturbance : std::uint8_t { allocation, refusal, stop_at_allocation, stop_at_poll };
+
+    /// Makes a call in which something may fail, after about `number` things that do not.
     template <typename Call>
-    std::invoke_result_t<Call> disturbed(Call& call, bool is_step) {
+    std::invoke_result_t<Call> disturbed(Call& call, Disturbance what, std::uint64_t number) {
         struct Ending {
             FailingScene& scene;
             ~Ending() { scene.end_disturbance(); }
         } const ending{*this};
-        const std::uint64_t kind = random_() % (is_step ? 4 : 2), number = some_number();
         std::optional<AtAllocation> at_allocation;
-        if (kind == 0) {
+        if (what == Disturbance::allocation) {
             at_allocation.emplace(number, fail_allocation);
-        } else if (kind == 1) {
-            refusal_->left = std::int64_t(random_() % 3);
-        } else if (kind == 2) {
+        } else if (what == Disturbance::refusal) {
+            refusal_->left = std::int64_t(number % 3);
+        } else if (what == Disturbance::stop_at_allocation) {
             at_allocation.emplace(number, [this] { stop_->request_stop(); });
         } else {
 #ifdef OCTOPAIR_TEST_HOOKS
@@ -212,6 +217,7 @@ private:
     std::optional<Scene> scene_;
     std::vector<Pair> pairs_;  // of the last step
     Failures failures_;
+    bool stepped_ = false;
 };
 
 }  // namespace octopair::test

@@ -99,7 +99,9 @@ TEST(LargeScene, ASmallOneThatMovesMeetsTheFirstGiant) {
     }
     ObjectId id;
     scene.add(Objects{std::span<const Box3f>(&giant, 1)}, {&id, 1});
-    EXPECT_FALSE(scene.step().full);
+    const ForcedStep forced(StepChoice::incremental);
+    const bool full = scene.step().full;
+    EXPECT_TRUE(!full || !has_test_hooks);  // without test hooks, a step that takes long becomes full
     EXPECT_EQ(scene.pairs().to_vector(), find_pairs(boxes));
 }
 
