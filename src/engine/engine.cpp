@@ -55,7 +55,7 @@ void Engine::check(const detail::Request& request) const { detail::check_request
 unsigned Engine::verification_threads() const { return 0; }
 
 /// Runs one public call. Throws if a callback of this engine makes the call: the new call would wait for the running call, which waits for
-/// the callback. Checks the request, and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty on failure. The engine, the
+/// the callback. Checks the request, and turns std::bad_alloc into Error{resource_limit}. Leaves the list empty on failure, except if it refuses a call within a callback. The engine, the
 /// sinks and the progress callbacks run in the default floating-point state.
 Summary Engine::call(const detail::Request& request, const detail::Output& output, std::stop_token stop) {
     refuse_inside_call_of(this);

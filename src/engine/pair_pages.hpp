@@ -36,7 +36,7 @@ public:
         if (left_->fetch_sub(1) <= 0) throw OverBudget{};
     }
     std::uint64_t taken() const { return taken_->load(); }
-    /// Sets the number of pages that were taken, and returns the difference to the pages that are left.
+    /// Sets the number of pages that were taken, and adds the difference to the pages that are left.
     void restore(std::uint64_t taken) { left_->fetch_add(std::int64_t(taken_->exchange(taken) - taken)); }
     /// From now on, pages are not limited: sorting a bucket takes more pages than it returns, if the bucket is split.
     void end() { ended_ = true; }

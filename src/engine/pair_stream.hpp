@@ -54,7 +54,7 @@ private:
     static constexpr double progress_after_collection = 0.6;
 
     /// Streams ascending pairs that do not fit into the buffer. Counts the pairs of each object. Then collects the pairs of one window of
-    /// objects after another; a window has as many objects as have pairs that fit into the buffer.
+    /// objects after another. A window is the next objects whose pairs together fit into the buffer, and at least one object.
     void windows() {
         const std::uint64_t objects = call_.source.size();
         std::vector<std::uint32_t> counts(objects, 0);

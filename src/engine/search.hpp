@@ -4,7 +4,7 @@
 //   octal      Scans once. Pairs go to the list as they are found.
 //   ascending  Scans into buckets and sorts these in the list.
 //
-// Pairs for a sink, and pairs with a limit, are streamed (pair_stream.hpp).
+// Pairs for a sink, and lists with a limit, are streamed (pair_stream.hpp). The MPI engine has RankSearch in place of this class.
 #pragma once
 
 #include <algorithm>

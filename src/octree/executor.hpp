@@ -3,7 +3,7 @@
 // Invariants
 //   Shares are numbered. An executor may run them in any order and concurrently.
 //   Pairs of share i come before those of share i + 1, whatever the order in which the shares run.
-//   A share may be run again after its worker died, so bodies must be idempotent.
+//   A share may be run again after its worker died, so bodies must be idempotent. (Counts by object are not: the whole pass is repeated.)
 //   Executors in several processes may divide one step among them. All processes then make the same calls, and each share
 //   runs in one of the processes.
 #pragma once

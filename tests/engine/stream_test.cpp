@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "engine/threads/team_output.hpp"
@@ -54,6 +56,31 @@ TEST_P(Stream, IsInTheOrderOfItsShares) {
         }
     }
     EXPECT_TRUE(stream(0, 1, 1).empty());
+}
+
+/// The pairs of one write may be more than the buffer holds.
+TEST_P(Stream, BuffersNoMorePairsThanAllowed) {
+    constexpr std::size_t each = 500, shares = 60;
+    for (const std::uint64_t buffer : {200u, 1000u}) {
+        std::atomic<std::uint64_t> written = 0;
+        std::uint64_t delivered = 0, most = 0;
+        bool ordered = true;
+        std::uint32_t last = 0;
+        const PairSink receive = [&](std::span<const Pair> pairs) {
+            // What is delivered straight from a write is not counted as written yet, and needs no buffer.
+            most = std::max(most, written.load() - std::min<std::uint64_t>(written.load(), delivered));
+            for (const Pair& pair : pairs) ordered &= std::exchange(last, pair.a) <= pair.a;
+            delivered += pairs.size();
+        };
+        run(shares, {receive, buffer, stop_}, [&](std::size_t share, ShareWriter& writer) {
+            const std::vector<Pair> pairs(each, Pair{std::uint32_t(share), 0});
+            writer.write(pairs);
+            written += each;
+        });
+        EXPECT_EQ(delivered, shares * each);
+        EXPECT_TRUE(ordered);
+        EXPECT_LE(most, buffer) << buffer;
+    }
 }
 
 /// While another thread runs a share, the calling thread runs the next share.

@@ -198,6 +198,23 @@ TEST_F(RankErrors, CancelAllWhereOneIsStoppedMeanwhile) {
     }
 }
 
+/// A cancelled stream leaves no limit of its buffer behind.
+TEST_F(RankErrors, AreNoneAfterACancelledStream) {
+    const std::vector<Box3f> many(60'000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    std::stop_source stop;
+    Options options{.order = Order::ascending, .buffer_bytes = std::uint64_t(1) << 40};
+    options.progress = [&](double done) {
+        if (done >= 0.29 && last()) stop.request_stop();  // the octree is built: pairs are listed next
+    };
+    const PairSink ignore = [](std::span<const Pair>) {};
+    expect_on_all(ErrorCode::cancelled, "cancelled", [&] {
+        (void)engine_->stream_pairs(Objects{many, {}}, ignore, options, stop.get_token());
+    });
+    const std::vector<Box3f> some(own_rank() == 0 ? 2'000 : 0, Box3f{{0, 0, 0}, {1, 1, 1}});
+    std::vector<Pair64> found;
+    EXPECT_EQ(find_pairs64(*engine_, IndexedObjects{{some, {}}, {}}, found).pairs, 1'999'000u);
+}
+
 TEST_F(RankErrors, AreNoneWhereThereAreFewObjectsOrNone) {
     const Box3f box{{0, 0, 0}, {1, 1, 1}};
     const std::vector<Box3f> one(own_rank() == 0 ? 1 : 0, box);

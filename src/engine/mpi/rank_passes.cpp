@@ -12,7 +12,7 @@ class RankExecutor::Writer final : public ShareWriter {
 public:
     Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
 
-    bool counting() const override { return writer_.counting(); }
+    bool counting() const override { return writer_.counting() && !filters(); }
     std::span<Pair> room(std::size_t pairs) override { return filters() ? std::span<Pair>() : writer_.room(pairs); }
     void write_count(std::uint64_t pairs) override {
         poll_stops();
@@ -72,9 +72,9 @@ void RankExecutor::for_each_writing(std::size_t count, const std::function<void(
 }
 
 RankPasses::RankPasses(unsigned threads)
-    : ThreadPasses(threads, [this](const ThreadScan& pass) {
-          RankExecutor wanted(pass.executor, *stops_, wanted_);
-          scan_octants({pass.call, wanted, pass.progress}, {octree(), share_.begin, share_.end}, searched(pass.call));
+    : ThreadPasses(threads, [this](const ThreadScan& scan) {
+          RankExecutor wanted(scan.executor, *stops_, wanted_);
+          scan_octants({scan.call, wanted, scan.progress}, {octree(), share_.begin, share_.end}, searched(scan.call));
       }) {}
 
 void RankPasses::build(Call& call, double progress) {
@@ -94,7 +94,7 @@ const EntrySource& RankPasses::searched(const Call& call) const {
 }
 
 void RankPasses::count_rows(Call& call, const RowBins& bins, std::span<std::uint64_t> counts, double progress) {
-    count_pairs_by_bin(team(), counts, bins.shift(), once(call, progress));
+    count_pairs_by_bin(team(), counts, bins.shift(), scan_into(call, progress));
 }
 
 }  // namespace octopair

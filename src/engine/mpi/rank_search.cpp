@@ -341,7 +341,8 @@ void RankSearch::find_ascending(RankCall& rank_call, Call& call) {
     rank_call.agreement.together([&] {
         build(rank_call, call);
         const CostMeter meter(comm_, costs_.scan);
-        over = list_octal(call, whole ? ~std::uint64_t(0) : call.buffer_pairs() / 2) ? 0 : 1;
+        const auto most = whole ? std::optional<std::uint64_t>() : call.buffer_pairs() / 2;
+        over = list_octal(call, most) ? 0 : 1;
     });
     if (comm_.sum(over) > 0) return find_windows(rank_call, call);
     const CostMeter meter(comm_, costs_.order);
@@ -356,25 +357,46 @@ void RankSearch::find_ascending(RankCall& rank_call, Call& call) {
     if (!whole) deliver(rank_call, allowance, hand_out(piece));
 }
 
+namespace {
+
+/// Lets a list allocate memory for about `most` pairs, and then throw OverBudget. No limit outlives this object.
+class ListLimit {
+public:
+    ListLimit(detail::PairStorage& list, std::uint64_t most) : list_(list) {
+        list_.ask([this, most](std::uint64_t more) {
+            bytes_ += more;
+            if (bytes_ / sizeof(Pair) > most) throw OverBudget{};
+        });
+    }
+    ~ListLimit() { list_.ask({}); }
+    ListLimit(const ListLimit&) = delete;
+    ListLimit& operator=(const ListLimit&) = delete;
+
+private:
+    detail::PairStorage& list_;
+    std::uint64_t bytes_ = 0;
+};
+
+}  // namespace
+
 /// Lists this rank's pairs in found_. Returns false, with found_ empty, if there are more than about `most` pairs.
-bool RankSearch::list_octal(Call& call, std::uint64_t most) {
+bool RankSearch::list_octal(Call& call, std::optional<std::uint64_t> most) {
+    constexpr double listed = 0.8;  // progress after the scan
+    if (!most) {
+        passes_.list_octal(call, detail::storage_of(found_), listed);
+        return true;
+    }
     // A list that has memory from an earlier call would fill this memory before it asks for more, so `most` would not bound its size.
-    if (most < ~std::uint64_t(0)) found_ = PairList();
+    found_ = PairList();
     detail::PairStorage& list = detail::storage_of(found_);
-    std::uint64_t bytes = 0;
-    list.ask([&](std::uint64_t more) {
-        bytes += more;
-        if (bytes / sizeof(Pair) > most) throw OverBudget{};
-    });
-    bool all = true;
+    const ListLimit limit(list, *most);
     try {
-        passes_.list_octal(call, list, 0.8);
+        passes_.list_octal(call, list, listed);
+        return true;
     } catch (const OverBudget&) {
         list.reset();
-        all = false;
+        return false;
     }
-    list.ask({});
-    return all;
 }
 
 /// Used if the pairs do not fit into the buffer. Counts the pairs of each bin of objects, then finds the pairs of as many

@@ -119,7 +119,7 @@ private:
     void count(RankCall& rank_call, Call& call);
     void find_octal(RankCall& rank_call, Call& call);
     void find_ascending(RankCall& rank_call, Call& call);
-    bool list_octal(Call& call, std::uint64_t most);
+    bool list_octal(Call& call, std::optional<std::uint64_t> most);
     void find_windows(RankCall& rank_call, Call& call);
     void find_indexed(RankCall& rank_call, Call& call);
     std::uint64_t relay_octal(RankCall& rank_call, Call& call, const OctalPairs& own);

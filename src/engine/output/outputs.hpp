@@ -4,13 +4,13 @@
 //   write(pairs)    takes the next pairs of the share (ShareWriter)
 //   commit(share)   records the share
 //
-// Nothing of a share is visible before its commit. An output whose share fails is not used again.
+// Nothing of a share is visible before its commit, except in counts by bin. An output whose share fails is not used again.
 //
 // The Place of an output says where memory for pairs comes from, and where a committed share is recorded:
 //   threads    blocks of the list; arrays of the thread                        (engine/threads/team_output.cpp)
 //   workers    blocks of shared memory; tables of the control block, from which a replacement worker goes on
 //                                                                              (engine/processes/worker/worker_place.hpp)
-// Streams have other outputs: a queue of threads and a ring of workers.
+// Streams have other outputs: OrderedStream (engine/threads/stream.cpp) and RingOutput (engine/processes/worker/worker_place.hpp).
 #pragma once
 
 #include <algorithm>
@@ -77,30 +77,30 @@ private:
     std::uint64_t pairs_ = 0;
 };
 
-/// Counts pairs by their `a`: adds the number of pairs of each row to counts[row]. Row: the `a` of a pair without its low `row_shift` bits.
+/// Counts pairs by their `a`: adds the number of pairs of each bin to counts[bin]. Bin: the `a` of a pair without its low `bin_shift` bits.
 /// Counts are visible before the commit of a share, so a lost share makes all of them wrong.
 /// Thread safety: several outputs may share `counts`, also in shared memory; the additions are atomic.
 template <typename Count>
-class RowCountOutput final : public FullOutput {
+class BinCountOutput final : public FullOutput {
 public:
-    explicit RowCountOutput(std::span<Count> counts, unsigned row_shift = 0) : counts_(counts), row_shift_(row_shift) {}
+    explicit BinCountOutput(std::span<Count> counts, unsigned bin_shift = 0) : counts_(counts), bin_shift_(bin_shift) {}
     template <typename Share>
     void begin(const Share&) {}
     template <typename Share>
     void commit(const Share&) {}
     void write(std::span<const Pair> pairs) override {
-        // Consecutive pairs are often of one row: add a run of them with one atomic operation.
+        // Consecutive pairs are often of one bin: add a run of them with one atomic operation.
         for (std::size_t i = 0; i < pairs.size();) {
-            const std::uint32_t row = pairs[i].a >> row_shift_;
+            const std::uint32_t bin = pairs[i].a >> bin_shift_;
             Count count = 0;
-            while (i < pairs.size() && pairs[i].a >> row_shift_ == row) ++i, ++count;
-            std::atomic_ref(counts_[row]).fetch_add(count, std::memory_order_relaxed);
+            while (i < pairs.size() && pairs[i].a >> bin_shift_ == bin) ++i, ++count;
+            std::atomic_ref(counts_[bin]).fetch_add(count, std::memory_order_relaxed);
         }
     }
 
 private:
     std::span<Count> counts_;
-    unsigned row_shift_;
+    unsigned bin_shift_;
 };
 
 /// Lists the pairs of each share. `Place`: take_block(pairs) returns memory for at least so many pairs; record(share, PairRuns).
@@ -160,5 +160,16 @@ private:
     Place place_;
     std::vector<PageString> buckets_;
 };
+
+/// Divides pairs into the parts that fit into blocks. room() returns how many pairs fit into the current block, at least 1, and makes room
+/// before if there is none. put(part) appends a part to the block.
+template <typename Room, typename Put>
+void put_in_parts(std::span<const Pair> pairs, Room&& room, Put&& put) {
+    while (!pairs.empty()) {
+        const auto part = pairs.first(std::min<std::size_t>(pairs.size(), room()));
+        put(part);
+        pairs = pairs.subspan(part.size());
+    }
+}
 
 }  // namespace octopair

@@ -12,7 +12,7 @@ namespace {
 class LocalPasses final : public ThreadPasses {
 public:
     explicit LocalPasses(unsigned threads)
-        : ThreadPasses(threads, [this](const ThreadScan& pass) { scan_octants(pass, octree(), pass.call.source); }) {}
+        : ThreadPasses(threads, [this](const ThreadScan& scan) { scan_octants(scan, octree(), scan.call.source); }) {}
 
     void build(Call& call, double progress) {
         TeamExecutor executor(team());

@@ -84,14 +84,14 @@ private:
                 return deliver_(pairs);
             }
             count_path(Path::stream_lead_held);
-            if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_) {
-                count_path(Path::stream_lead_full);
-                while (stream_.head_ < share_) stream_.hand_out(deliver_, true);
-                deliver_(held_);
-                held_.clear();
-                return deliver_(pairs);
-            }
-            held_.insert(held_.end(), pairs.begin(), pairs.end());
+            const auto held = pairs.first(std::min(pairs.size(), stream_.buffer_ - held_.size()));
+            held_.insert(held_.end(), held.begin(), held.end());
+            if (held.size() == pairs.size()) return;
+            count_path(Path::stream_lead_full);
+            while (stream_.head_ < share_) stream_.hand_out(deliver_, true);
+            deliver_(held_);
+            held_.clear();
+            deliver_(pairs.subspan(held.size()));
         }
         void finish() { stream_.hand_over(share_, held_, true); }
 
@@ -107,11 +107,15 @@ private:
         BufferedWriter(OrderedStream& stream, std::size_t share, std::vector<Pair>& held)
             : stream_(stream), share_(share), held_(held) {}
         void write(std::span<const Pair> pairs) override {
-            if (!held_.empty() && held_.size() + pairs.size() > stream_.buffer_) {
-                count_path(Path::stream_helper_full);
-                stream_.hand_over(share_, held_, false);
-            }
-            held_.insert(held_.end(), pairs.begin(), pairs.end());
+            const auto room = [&] {
+                if (held_.size() == stream_.buffer_) {
+                    count_path(Path::stream_helper_full);
+                    stream_.hand_over(share_, held_, false);
+                }
+                return stream_.buffer_ - held_.size();
+            };
+            put_in_parts(pairs, room,
+                         [&](std::span<const Pair> part) { held_.insert(held_.end(), part.begin(), part.end()); });
         }
         void finish() { stream_.hand_over(share_, held_, true); }
 
@@ -193,8 +197,9 @@ public:
     StreamExecutor(Team& team, const StreamTo& to) : TeamExecutor(team), to_(to) {}
     void for_each_writing(std::size_t count, const Body& body) override {
         const std::size_t ahead = std::size_t(width()) * tuning().output.shares_ahead;
-        // Each share that runs ahead has two buffers: one being filled, one ready. The calling thread has one more.
-        const std::size_t buffer = std::max<std::size_t>(1, std::size_t(to_.buffer_pairs / (2 * ahead + 1)));
+        // Each share that runs ahead has two buffers: one being filled, one ready. The calling thread has two more: that of its own share, and
+        // the one that it delivers.
+        const std::size_t buffer = std::max<std::size_t>(1, std::size_t(to_.buffer_pairs / (2 * ahead + 2)));
         OrderedStream stream(count, body, ahead, buffer);
         stream.on_failure = [&] { to_.abandon.request_stop(); };
         team().with_helpers([&] { stream.lead(to_.deliver); }, [&] { stream.help(); });

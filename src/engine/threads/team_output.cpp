@@ -92,13 +92,13 @@ std::uint64_t count_pairs(Team& team, const FindPairs& find) {
 }
 
 void count_pairs_by_object(Team& team, std::span<std::uint32_t> counts, const FindPairs& find) {
-    OutputExecutor<RowCountOutput<std::uint32_t>> executor(team, [&](unsigned) { return RowCountOutput(counts); });
+    OutputExecutor<BinCountOutput<std::uint32_t>> executor(team, [&](unsigned) { return BinCountOutput(counts); });
     find(executor);
 }
 
 void count_pairs_by_bin(Team& team, std::span<std::uint64_t> counts, unsigned bin_shift, const FindPairs& find) {
-    OutputExecutor<RowCountOutput<std::uint64_t>> executor(team,
-                                                           [&](unsigned) { return RowCountOutput(counts, bin_shift); });
+    OutputExecutor<BinCountOutput<std::uint64_t>> executor(team,
+                                                           [&](unsigned) { return BinCountOutput(counts, bin_shift); });
     find(executor);
 }
 

@@ -1,7 +1,7 @@
 // What becomes of the pairs that the threads of a team find: they are counted, listed, streamed, or sorted into ascending order.
 //
-// Each function runs `find` once with an executor of the team. Pairs are in the order of the shares, whatever thread found them.
-// The outputs of the threads are those of workers, too (engine/output/outputs.hpp).
+// Each function runs `find` once with an executor of the team. Pairs that are listed or streamed in octal order are in the order of the
+// shares, whatever thread found them. Workers use the same outputs (engine/output/outputs.hpp), except for streams.
 #pragma once
 
 #include <cstdint>

@@ -29,21 +29,21 @@ public:
     ThreadPasses(unsigned threads, Scan scan) : team_(threads), scan_(std::move(scan)) {}
 
     unsigned width() const { return team_.threads(); }
-    std::uint64_t count(Call& call, double progress) { return count_pairs(team_, once(call, progress)); }
+    std::uint64_t count(Call& call, double progress) { return count_pairs(team_, scan_into(call, progress)); }
     void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
-        count_pairs_by_object(team_, counts, once(call, progress));
+        count_pairs_by_object(team_, counts, scan_into(call, progress));
     }
     void list_octal(Call& call, detail::PairStorage& list, double progress) {
-        list_pairs(team_, list, once(call, progress));
+        list_pairs(team_, list, scan_into(call, progress));
     }
     void stream_octal(Call& call, const PairSink& deliver, double progress) {
-        stream_pairs(team_, {deliver, call.buffer_pairs(), call.stop}, once(call, progress));
+        stream_pairs(team_, {deliver, call.buffer_pairs(), call.stop}, scan_into(call, progress));
     }
     void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) {
         const double begin = call.progress.end();
         const auto begin_sort = [&](std::uint64_t pairs) { call.progress.stage(progress, pairs); };
         const auto sorted = [&](std::uint64_t pairs) { call.progress.add(pairs); };
-        list_ascending_pairs(team_, list, bounds, once(call, begin + ascending_scan_part * (progress - begin)),
+        list_ascending_pairs(team_, list, bounds, scan_into(call, begin + ascending_scan_part * (progress - begin)),
                              {call.stop.get_token(), begin_sort, sorted});
     }
     void end() {}
@@ -62,15 +62,16 @@ protected:
         call.summary.steps.count = octree_.seconds().count;
     }
     /// Scans `octants` of the octree, which was built of `source`.
-    void scan_octants(const ThreadScan& pass, const OctreeRange& octants, const EntrySource& source) {
-        Call& call = pass.call;
+    void scan_octants(const ThreadScan& scan, const OctreeRange& octants, const EntrySource& source) {
+        Call& call = scan.call;
         const Timed timed(call.summary.steps.scan);
-        call.progress.stage(pass.progress, octants.octree.entry_count(octants.begin, octants.end));
-        scan(octants, {source, call.stop.get_token(), scan_memory_}, pass.executor,
-             [&](std::uint64_t entries) { call.progress.add(entries); });
+        call.progress.stage(scan.progress, octants.octree.entry_count(octants.begin, octants.end));
+        octopair::scan(octants, {source, call.stop.get_token(), scan_memory_}, scan.executor,
+                       [&](std::uint64_t entries) { call.progress.add(entries); });
     }
 
-    FindPairs once(Call& call, double progress) {
+    /// Returns a function that scans into an executor.
+    FindPairs scan_into(Call& call, double progress) {
         return [this, &call, progress](Executor& executor) { scan_({call, executor, progress}); };
     }
 

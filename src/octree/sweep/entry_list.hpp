@@ -18,7 +18,7 @@
 
 namespace octopair {
 
-/// An entry without bounds. A EntrySource loads the bounds of `object` when a step needs them.
+/// An entry without bounds. An EntrySource loads the bounds of `object` when a step needs them.
 struct EntryId {
     std::uint32_t object;
     std::uint32_t mask;

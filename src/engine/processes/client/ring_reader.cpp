@@ -40,7 +40,7 @@ bool RingReader::take_next() {
         const Share& share = pool_.view().shares(share_, 1)[0];
         const ShareState state = ShareState::of(share.state.load());
         if (state.pass != pool_.number() || state.slot >= pass_.workers) return false;
-        if (share.step != unsigned(Step::scan)) {
+        if (share.step.load() != unsigned(Step::scan)) {
             if (state.status != ShareStatus::done) return false;
             ++share_;
         } else if (!take_block(state.slot)) {

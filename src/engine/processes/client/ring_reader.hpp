@@ -4,6 +4,7 @@
 //   A slot runs its shares in ascending order and writes their blocks to its ring in order.
 //   The next block of the stream is therefore at the front of the ring of the slot that has the next share.
 //   A slot whose share is not the next one may fill its ring, and then waits.
+//   A share that runs again writes the same pairs in the same order. So its first pairs can be skipped if they were delivered.
 //   The slot with the next share always finds room, because all its earlier blocks have been taken: no deadlock.
 #pragma once
 

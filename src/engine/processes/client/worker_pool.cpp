@@ -274,8 +274,9 @@ void WorkerPool::count_death(unsigned slot) {
         const Share& record = view_.shares(share - 1, 1)[0];
         const ShareState state = ShareState::of(record.state.load());
         const bool is_running = state.is(number_, ShareStatus::claimed) && state.slot == slot;
-        if (!is_running || record.step >= step_names.size()) return check_crash_loop(slot);
-        step = Step(record.step);
+        const std::uint32_t number = record.step.load();
+        if (!is_running || number >= step_names.size()) return check_crash_loop(slot);
+        step = Step(number);
         count_fault(faults_.in_share[std::size_t(step)]);
     } else {
         if (part.preparing.load() == 0) return check_crash_loop(slot);

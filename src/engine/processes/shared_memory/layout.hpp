@@ -15,7 +15,7 @@
 // Invariants
 //   Each step has the same shares, in the same order, in all workers of a pass. A share's number therefore identifies it.
 //   A share belongs to the slot that claims it. If its worker dies, the replacement worker in that slot runs it again.
-//   A share reads only complete data, and writes data that no process reads before the share is done.
+//   A share reads only complete data, and writes data that no process reads before the share is done, except blocks of a stream.
 //   Every number in this memory is checked before use: a worker that died may have left any value.
 #pragma once
 
@@ -111,7 +111,7 @@ struct Share {
     std::uint64_t pairs;      ///< number of pairs found (list, count)
     std::uint64_t first_run;  ///< index of the first run of these pairs
     std::uint32_t runs;
-    std::uint32_t step;
+    std::atomic<std::uint32_t> step;
     std::uint64_t commit;  ///< number of the slot's commit that includes this share (ascending)
 };
 
@@ -159,6 +159,7 @@ inline constexpr std::uint64_t max_runs = std::uint64_t(1) << 26;
 inline constexpr std::uint64_t max_logged = std::uint64_t(1) << 26;  // pages of one slot; at 512 pairs a page, 256 GiB
 inline constexpr std::uint64_t max_ring_blocks = 64;
 inline constexpr std::uint64_t list_block_pairs = 1 << 15;
+static_assert(list_block_pairs % default_tuning.output.page == 0);  // pages are numbered from the begin of the region
 
 constexpr std::uint64_t whole_pages(std::uint64_t bytes) {
     constexpr std::uint64_t page = 4096;

@@ -273,7 +273,7 @@ void PassRunner::count_by_object(const Context& context) {
         std::fill(counts.data() + begin, counts.data() + end, 0u);
     });
     context.slot.number = job_->arena.offset(counts.data());
-    scan_into(context, RowCountOutput(counts.span()));
+    scan_into(context, BinCountOutput(counts.span()));
 }
 
 }  // namespace octopair

@@ -45,18 +45,18 @@ void SharedBuckets::commit(const WorkerPlace::Share& share, const Buckets& bucke
         more += buckets[bucket].pages().size() - logged_[bucket];
     }
     const auto log = place_.view.log(place_.shares.slot(), log_size_ + more);
-    Commit& commit = place_.view.commit(place_.shares.slot(), commit_ + 1);
+    Commit& next = place_.view.commit(place_.shares.slot(), commit_ + 1);
     for (std::size_t bucket = 0; bucket < buckets.size(); ++bucket) {
         const auto pages = buckets[bucket].pages();
         for (; logged_[bucket] < pages.size(); ++logged_[bucket]) {
             const auto offset = reinterpret_cast<const std::byte*>(pages[logged_[bucket]]) - place_.pairs.data();
             log[log_size_++] = {std::uint32_t(std::uint64_t(offset) / page_bytes()), std::uint32_t(bucket)};
         }
-        commit.sizes[bucket] = buckets[bucket].size();
+        next.sizes[bucket] = buckets[bucket].size();
     }
     place_.shares.reach(CommitPoint::within);
-    commit.log_size = log_size_;
-    commit.pages_taken = budget_.taken();
+    next.log_size = log_size_;
+    next.pages_taken = budget_.taken();
     share.record.commit = ++commit_;
 }
 
@@ -66,7 +66,7 @@ std::uint64_t SharedBuckets::last_commit(unsigned slot) const {
     for (Share& share : place_.view.shares(0, place_.shares.shares())) {
         const ShareState state = ShareState::of(share.state.load());
         if (state.is(place_.shares.pass(), ShareStatus::done) && state.slot == slot &&
-            share.step == unsigned(Step::scan)) {
+            share.step.load() == unsigned(Step::scan)) {
             last = std::max(last, share.commit);
         }
     }

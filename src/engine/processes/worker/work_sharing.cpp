@@ -17,7 +17,7 @@ void WorkSharing::run(Step step, std::uint64_t count, const Body& body) {
     slot_.preparing.store(0);
     for (std::uint64_t i = 0; i < count; ++i) {
         Share& record = records[i];
-        std::atomic_ref(record.step).store(std::uint32_t(step));
+        record.step.store(std::uint32_t(step));
         if (!claim(record)) continue;
         throw_if_stopped(stop_);
         do_share({i, first + i, record}, body);
@@ -41,7 +41,7 @@ void WorkSharing::do_share(const ClaimedShare& share, const Body& body) {
     slot_.share.store(share.number + 1);
     record.pairs = record.first_run = record.commit = 0;
     record.runs = 0;
-    if (self_.observer != nullptr) self_.observer->begin(Step(record.step));
+    if (self_.observer != nullptr) self_.observer->begin(Step(record.step.load()));
     body(share);
     if (self_.observer != nullptr) self_.observer->end();
     record.state.store(ShareState{self_.pass, ShareStatus::done, self_.slot}.packed());

@@ -49,14 +49,15 @@ void RingOutput::commit(const WorkerPlace::Share&) {
 }
 
 void RingOutput::write(std::span<const Pair> pairs) {
-    while (!pairs.empty()) {
+    const auto room = [&] {
         if (block_.empty()) block_ = free_block();
-        const auto part = pairs.first(std::min(pairs.size(), block_.size() - held_));
+        return block_.size() - held_;
+    };
+    put_in_parts(pairs, room, [&](std::span<const Pair> part) {
         std::copy(part.begin(), part.end(), block_.begin() + std::ptrdiff_t(held_));
         held_ += part.size();
-        pairs = pairs.subspan(part.size());
         if (held_ == block_.size()) hand_over(false);
-    }
+    });
 }
 
 std::span<Pair> RingOutput::free_block() {
