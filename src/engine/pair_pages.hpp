@@ -19,7 +19,8 @@ namespace octopair {
 /// Returns the capacity of a page in pairs.
 inline std::size_t page_pairs() { return tuning().output.page; }
 
-/// Thrown by a pass that needs more pages than its budget allows. At most a quarter of its pages are then partly filled.
+/// Thrown by a pass that needs more pages than its budget allows. At most a quarter of its pages are then partly filled,
+/// if each thread or worker may take at least 8 pages.
 struct OverBudget {};
 
 /// Number of pages that all threads or workers of a pass together may still take. Also counts the pages that one thread or worker took.

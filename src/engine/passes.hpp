@@ -1,4 +1,4 @@
-// Passes: what an engine does for a Search (search.hpp): builds the octree of a call, and scans it into outputs.
+// Passes: the functions of an engine that a Search (search.hpp) calls. They build the octree of a call, and scan it into outputs.
 // Start here to add a new engine.
 //
 // An engine is a class derived from Engine (octopair/engine.hpp) that owns its passes, a Search, a TicketLock and a JobQueue. The
@@ -35,8 +35,8 @@ struct Call {
     }
 };
 
-/// What an engine does for a Search. build() comes first, then scans. Each scan adds its times to the summary and advances the progress to
-/// the fraction `progress`. Lists are empty before, counts are 0.
+/// A Search calls these functions of an engine. It calls build() first, then scans. Each scan adds its times to the summary and advances the
+/// progress to the fraction `progress`. Requires: lists are empty, and counts are 0.
 ///   width()            number of threads or workers that share a scan
 ///   build              builds the octree of the call's objects
 ///   count              returns the number of pairs

@@ -67,7 +67,7 @@ TEST_P(Stream, BuffersNoMorePairsThanAllowed) {
         bool ordered = true;
         std::uint32_t last = 0;
         const PairSink receive = [&](std::span<const Pair> pairs) {
-            // What is delivered straight from a write is not counted as written yet, and needs no buffer.
+            // A share may deliver pairs before its write returns. `written` does not count these pairs yet, and they need no buffer.
             most = std::max(most, written.load() - std::min<std::uint64_t>(written.load(), delivered));
             for (const Pair& pair : pairs) ordered &= std::exchange(last, pair.a) <= pair.a;
             delivered += pairs.size();

@@ -1,4 +1,4 @@
-// Outputs: what becomes of the pairs of a scan. Each thread or worker has an output of its own, and fills it share by share:
+// Outputs: they count, list or sort the pairs of a scan. Each thread or worker has an output of its own, and fills it share by share:
 //
 //   begin(share)    begins a share
 //   write(pairs)    takes the next pairs of the share (ShareWriter)

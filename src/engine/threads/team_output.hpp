@@ -1,4 +1,4 @@
-// What becomes of the pairs that the threads of a team find: they are counted, listed, streamed, or sorted into ascending order.
+// These functions let the threads of a team find pairs, and count them, list them, stream them, or sort them into ascending order.
 //
 // Each function runs `find` once with an executor of the team. Pairs that are listed or streamed in octal order are in the order of the
 // shares, whatever thread found them. Workers use the same outputs (engine/output/outputs.hpp), except for streams.

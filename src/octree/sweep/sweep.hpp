@@ -1,5 +1,5 @@
-// What the two kinds of sweep share. A sweep finds the overlapping boxes of sorted sets: it tests each row of one set against the columns
-// that begin within the row on the first axis of the sweep.
+// This file has the parts that both kinds of sweep use. A sweep finds the overlapping boxes of sorted sets: it tests each row of one set
+// against the columns that begin within the row on the first axis of the sweep.
 //
 //                                    on cells of an octant         on boxes in float32
 //                                    (cell_sweep.hpp)              (box_sweep.hpp)
