@@ -68,7 +68,8 @@ TEST_P(Stream, BuffersNoMorePairsThanAllowed) {
         std::uint32_t last = 0;
         const PairSink receive = [&](std::span<const Pair> pairs) {
             // A share may deliver pairs before its write returns. `written` does not count these pairs yet, and they need no buffer.
-            most = std::max(most, written.load() - std::min<std::uint64_t>(written.load(), delivered));
+            const std::uint64_t so_far = written.load();
+            if (so_far > delivered) most = std::max(most, so_far - delivered);
             for (const Pair& pair : pairs) ordered &= std::exchange(last, pair.a) <= pair.a;
             delivered += pairs.size();
         };

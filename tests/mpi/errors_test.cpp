@@ -202,7 +202,7 @@ TEST_F(RankErrors, CancelAllWhereOneIsStoppedMeanwhile) {
 TEST_F(RankErrors, AreNoneAfterACancelledStream) {
     const std::vector<Box3f> many(60'000, Box3f{{0, 0, 0}, {1, 1, 1}});
     std::stop_source stop;
-    Options options{.order = Order::ascending, .buffer_bytes = std::uint64_t(1) << 40};
+    Options options{.order = Order::ascending};
     options.progress = [&](double done) {
         if (done >= 0.29 && last()) stop.request_stop();  // the octree is built: pairs are listed next
     };
