@@ -41,7 +41,7 @@ Arrangement arrangement_of(std::string_view name);
 struct Costs : RankCosts {
     double merge = 0;  ///< seconds of merging sorted lists
 };
-/// Median of each step, for each rank.
+/// For each rank.
 using EachRank = std::vector<Costs>;
 
 struct Measured {
@@ -49,7 +49,8 @@ struct Measured {
     std::uint64_t pairs = 0, entries = 0;
     double wall_seconds = 0;  ///< median over the calls of rank 0
     /// `together`: all ranks share the cores and caches of this machine. `alone`: one rank at a time repeats the call
-    /// with the received data at hand, like on its own machine; other ranks sleep.
+    /// with the received data at hand, like on its own machine; other ranks sleep. `together` has the medians of each step over the calls,
+    /// `alone` the steps of the call that took least.
     EachRank together, alone;
 
     double bytes_per_object() const;

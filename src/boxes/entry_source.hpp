@@ -71,6 +71,8 @@ public:
     virtual std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const = 0;
     /// Sets the bounds of entries whose object is set.
     virtual void load_bounds(std::span<Entry> entries) const = 0;
+    /// True if load_bounds() works for all entries. On a rank that received entries, the boxes of most objects are on other ranks.
+    virtual bool has_all_bounds() const { return true; }
 
 protected:
     /// Does what refused() does, with a call of is_pair() for each pair in doubt.

@@ -34,6 +34,17 @@ struct PairStorage {
     void keep(std::shared_ptr<const void> memory) { kept_ = std::move(memory); }
     /// Appends `pairs` as the next chunk. Merges chunks that are adjacent in memory.
     void append(std::span<const Pair> pairs);
+    /// Calls keep(pairs) for each chunk, which moves the pairs that stay to the front and returns their number.
+    /// Requires: all chunks are in the list's blocks.
+    template <typename Keep>
+    void keep_some(const Keep& keep) {
+        size = 0;
+        for (std::span<const Pair>& chunk : chunks) {
+            auto* const pairs = const_cast<Pair*>(chunk.data());  // NOLINT: the blocks are not constant
+            chunk = chunk.first(keep(std::span(pairs, chunk.size())));
+            size += chunk.size();
+        }
+    }
 
 private:
     std::size_t growth() const;

@@ -169,9 +169,11 @@ JointCall join_call(Communicator& comm, const detail::Request& request, OutputKi
         call.padded[set] = like.size > 0 && like.padded;
         call.form.exact &= !call.wide[set] && !call.padded[set];
         for (std::size_t rank = 0; rank < all.size(); ++rank) {
-            if (rank == comm.rank()) call.begins[set] = call.totals[set];
+            call.starts[set].push_back(call.totals[set]);
             call.totals[set] += all[rank].slices[set].size;
         }
+        call.begins[set] = call.starts[set][comm.rank()];
+        call.starts[set].push_back(call.totals[set]);
     }
     if (call.objects() > max_objects) {
         throw Error(ErrorCode::resource_limit, std::to_string(call.objects()) + " objects on all ranks; at most " +

@@ -27,6 +27,8 @@ struct JointCall {
     bool join = false;
     std::array<std::uint64_t, 2> totals = {0, 0};  ///< number of objects of each set, on all ranks
     std::array<std::uint64_t, 2> begins = {0, 0};  ///< begin of this rank's slice in each set
+    /// Begin of each rank's slice in each set, and behind them the total.
+    std::array<std::vector<std::uint64_t>, 2> starts;
     std::array<std::uint64_t, 2> sizes = {0, 0};   ///< number of objects of this rank's slice of each set
     std::array<bool, 2> wide = {}, padded = {};    ///< `wide`: boxes are float64; `padded`: objects have paddings
     EntryForm form;
@@ -45,6 +47,10 @@ struct JointCall {
     /// Returns the position of object `own` of this rank's source.
     std::uint64_t position(std::uint64_t own) const {
         return own < sizes[0] ? begins[0] + own : totals[0] + begins[1] + (own - sizes[0]);
+    }
+    /// Returns the number of an object in this rank's source. `position`: of an object in this rank's slices.
+    std::uint64_t own_number(std::uint64_t position) const {
+        return position < totals[0] ? position - begins[0] : sizes[0] + (position - totals[0] - begins[1]);
     }
     /// Throws: BadObject for the first object of this rank's source, from `own` on, that is not a valid box.
     [[noreturn]] void refuse(const BoxSource& source, std::size_t own) const;

@@ -1,4 +1,5 @@
 // The steps of RankSearch that distribute the octree: from this rank's slice of the objects to its share of the search.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -6,6 +7,9 @@
 #include <vector>
 
 #include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
+#include "engine/mpi/entries/box_forecast.hpp"
+#include "engine/mpi/entries/object_fetch.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
 #include "engine/mpi/partition/octree_planning.hpp"
 #include "engine/mpi/partition/routing.hpp"
@@ -18,59 +22,128 @@ namespace octopair {
 RankShare RankSearch::plan_alone(RankCall& rank_call, const BoxSource& own) {
     const CostMeter meter(comm_, costs_.plan);
     RankShare share{make_layout(own, rank_call.stop.get_token())};
-    share.end = OctantIndex(share.layout.directory.octants().size());
+    share.end = OctantIndex(share.layout->directory.octants().size());
     costs_.octants = share.end;
     return share;
 }
 
-RankShare RankSearch::plan_and_route(RankCall& rank_call, const BoxSource& own) {
-    std::optional<OctreePlanning> planning;
-    {
-        const CostMeter meter(comm_, costs_.plan);
-        planning.emplace(comm_, rank_call.joint, own, rank_call.stop.get_token());
-    }
-    const OctantOwners owners = route(rank_call, own, *planning);
-    return grow(rank_call, *planning, owners);
+void RankSearch::plan(RankCall& rank_call, const BoxSource& own, std::optional<OctreePlanning>& planning) {
+    const CostMeter meter(comm_, costs_.plan);
+    planning.emplace(comm_, rank_call.joint, own, rank_call.stop.get_token());
 }
 
-/// Sends each object to the ranks whose octants it touches, and receives the objects for this rank. Returns the owners of the octants of
-/// the shared top.
-OctantOwners RankSearch::route(RankCall& rank_call, const BoxSource& own, const OctreePlanning& planning) {
-    const OctreeLayout& shared = planning.shared();
+/// Entries are sent if pairs in doubt can wait until the scan has ended, unless it is known that many boxes will be needed: from the plan,
+/// or from an earlier call of this engine, if that call had about as many objects.
+bool RankSearch::can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) const {
+    const bool kept = rank_call.indexed == nullptr && output_kind_of(rank_call.output) != OutputKind::sink;
+    const bool whole_list = rank_call.output.list == nullptr || !rank_call.request.options.limit;
+    const std::uint64_t objects = rank_call.joint.objects();
+    const bool failed = objects / 2 < objects_with_boxes_ && objects_with_boxes_ / 2 <= objects;
+    return kept && whole_list && planning.whole() && !planning.needs_coordinates() && !failed;
+}
+
+/// Encodes this rank's objects, and exchanges the entries. Returns this rank's share.
+/// Throws: NeedsBoxes.
+RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning) {
+    const JointCall& joint = rank_call.joint;
+    TeamExecutor threads(passes_.threads());
+    RankExecutor executor(threads, rank_call.stops);
+    LinearOctree& octree = passes_.octree();
+    EntryExchange exchange(comm_, joint, octree, entries_);
+    std::vector<std::uint32_t> entries;  // number of entries of each octant
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.build);
+        const PositionedObjects objects(own, joint);
+        try {
+            octree.build(planning.take_shared(), objects, executor, rank_call.stop.get_token());
+        } catch (const LinearOctree::Invalid& invalid) {
+            joint.refuse(own, invalid.begin);
+        }
+        entries = exchange.entries();
+    });
+    comm_.add_up(std::span(entries));
+    const bool inner = check_entries(octree, entries);
+
+    OctantOwners owners;
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.pack);
+        owners = planning.owners(entries);
+        exchange.pack(executor, owners);
+    });
+    exchange.exchange();
+    InnerEntries& received = rank_call.inner.emplace(comm_);
+    if (inner) {
+        const CostMeter meter(comm_, costs_.pack);
+        received.exchange(joint, octree, own, owners);
+    }
+    RankShare share;
+    share.begin = owners.begin(comm_.rank());
+    share.end = owners.end(comm_.rank());
+    WantedObjects wanted;
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.pack);
+        exchange.arrange(received);
+        wanted = forecast_boxes(joint, {octree, share.begin, share.end}, received);
+    });
+    if (comm_.sum(wanted[0].size() + wanted[1].size()) > 0) {
+        const CostMeter meter(comm_, costs_.pack);
+        for (unsigned set = 0; set < rank_call.sets(); ++set)
+            rank_call.fetched[set] = fetch_objects(comm_, {joint, set, rank_call.slices[set]}, wanted[set]);
+    }
+    rank_call.known.emplace(joint, rank_call.fetched);
+    count_path(Path::ranks_entries_sent);
+    share.source = &*rank_call.known;
+    costs_.octants = octree.octants().size();
+    costs_.objects_received = octree.entry_count(share.begin, share.end);
+    return share;
+}
+
+/// Returns whether inner octants have entries. `entries`: number of entries of each octant, of all ranks.
+/// Throws: NeedsBoxes, on all ranks.
+bool RankSearch::check_entries(const LinearOctree& octree, std::span<const std::uint32_t> entries) {
+    std::uint64_t inner = 0, all = 0, largest = 0;
+    for (OctantIndex octant = 0; octant < entries.size(); ++octant) {
+        const std::uint64_t own = entries[octant];
+        all += own;
+        inner += octree.octants()[octant].leaf() ? 0 : own;
+        largest = std::max(largest, own);
+    }
+    // Entries of inner octants are sent with their boxes, so many of them would take more bytes than the boxes of all objects.
+    constexpr std::uint64_t least_part = 4;
+    if (largest > tuning().scan.max_swept_list || inner * least_part > all) throw NeedsBoxes{};
+    return inner > 0;
+}
+
+/// Exchanges this rank's objects. Returns this rank's share.
+RankShare RankSearch::exchange_boxes(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning) {
+    count_path(Path::ranks_boxes_sent);
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, rank_call.stops);
     std::vector<std::uint32_t> entries;  // number of entries of each octant
     std::optional<Routing> routing;
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.route);
-        routing.emplace(rank_call.joint, own, shared, routing_, rank_call.stop.get_token());
+        routing.emplace(rank_call.joint, own, planning.shared(), routing_, rank_call.stop.get_token());
         entries = routing->find_homes(executor);
     });
-    comm_.add_up(std::span(entries));
-    std::optional<OctantOwners> owners;
+    if (planning.whole()) comm_.add_up(std::span(entries));
+    OctantOwners owners;
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.route);
-        owners.emplace(planning.top(), shared.directory, entries, comm_.size());
-        routing->assign_owners(executor, *owners);
+        owners = planning.owners(entries);
+        routing->assign_owners(executor, owners);
     });
     costs_.shared_objects = routing->shared_objects();
     exchange_objects(rank_call, executor, *routing);
-    return std::move(*owners);
-}
 
-/// Divides the octants that this rank owns. Returns this rank's share.
-RankShare RankSearch::grow(RankCall& rank_call, OctreePlanning& planning, const OctantOwners& owners) {
     const CostMeter meter(comm_, costs_.plan);
-    OctreePlanning::OwnLayout own = planning.grow(owners);
-    if (planted(Fault::rank_takes_neighbour) && own.end < own.layout.directory.octants().size()) ++own.end;
-    costs_.octants = own.layout.directory.octants().size();
-    RankShare share{std::move(own.layout), own.begin, own.end};
+    OctreePlanning::OwnLayout layout = planning.take_own(owners);
+    if (planted(Fault::rank_takes_neighbour) && layout.end < layout.layout.directory.octants().size()) ++layout.end;
+    costs_.octants = layout.layout.directory.octants().size();
+    RankShare share{std::move(layout.layout), layout.begin, layout.end};
     if (rank_call.joint.indexed) return share;
-    ObjectPositions& positions = share.positions.emplace();
-    for (unsigned set = 0; set < rank_call.sets(); ++set) {
-        positions.of_set[set] = std::as_const(exchanged_[set].received.positions).span();
-    }
-    if (rank_call.joint.join) positions.second_begin = std::uint32_t(rank_call.joint.totals[0]);
+    for (unsigned set = 0; set < rank_call.sets(); ++set)
+        share.positions[set] = std::as_const(exchanged_[set].received.positions).span();
     return share;
 }
 

@@ -6,39 +6,51 @@
 
 namespace octopair {
 
-/// Passes the pairs of a share to another writer, except pairs that WantedRows excludes. Polls for stop requests of other ranks, because
-/// a share may write pairs for minutes.
+/// Passes the pairs of a share to another writer, as PairNaming says. Polls for stop requests of other ranks, because a share may write
+/// pairs for minutes.
 class RankExecutor::Writer final : public ShareWriter {
 public:
     Writer(ShareWriter& writer, RankExecutor& executor) : writer_(writer), executor_(executor) {}
 
     bool counting() const override { return writer_.counting() && !filters(); }
-    std::span<Pair> room(std::size_t pairs) override { return filters() ? std::span<Pair>() : writer_.room(pairs); }
+    std::span<Pair> room(std::size_t pairs) override {
+        room_ = filters() ? std::span<Pair>() : writer_.room(pairs);
+        return room_;
+    }
     void write_count(std::uint64_t pairs) override {
         poll_stops();
         writer_.write_count(pairs);
     }
     void write(std::span<const Pair> pairs) override {
         poll_stops();
-        if (!filters()) return writer_.write(pairs);
-        std::array<Pair, 1024> wanted;
+        if (!names() && !filters()) return writer_.write(pairs);
+        if (!filters() && pairs.data() == room_.data()) {
+            for (Pair& pair : room_.first(pairs.size())) pair = named(pair);
+            return writer_.write(pairs);
+        }
+        std::array<Pair, 1024> written;
         while (!pairs.empty()) {
-            const auto some = pairs.first(std::min(pairs.size(), wanted.size()));
-            const std::size_t count = copy_wanted(some, wanted.data());
-            if (count > 0) writer_.write(std::span(wanted).first(count));
+            const auto some = pairs.first(std::min(pairs.size(), written.size()));
+            const std::size_t count = copy_wanted(some, written.data());
+            if (count > 0) writer_.write(std::span(written).first(count));
             pairs = pairs.subspan(some.size());
         }
     }
 
 private:
-    bool filters() const { return !executor_.wanted_.marks.empty(); }
+    bool filters() const { return !executor_.naming_.wanted.marks.empty(); }
+    bool names() const { return !executor_.naming_.positions[0].empty(); }
+    Pair named(const Pair& pair) const {
+        const auto& [of_first, of_second] = executor_.naming_.positions;
+        return {of_first[pair.a], executor_.naming_.join ? of_second[pair.b] : of_first[pair.b]};
+    }
     /// Copies the wanted pairs, in order. Returns their number. Requires: `out` has room for all pairs.
     std::size_t copy_wanted(std::span<const Pair> pairs, Pair* out) const {
-        const WantedRows& wanted = executor_.wanted_;
+        const WantedRows& wanted = executor_.naming_.wanted;
         std::size_t count = 0;
         for (const Pair& pair : pairs) {
-            out[count] = pair;
-            count += wanted.marks[wanted.bins.bin(pair)] != 0 ? 1 : 0;
+            out[count] = names() ? named(pair) : pair;
+            count += !filters() || wanted.marks[wanted.bins.bin(out[count])] != 0 ? 1 : 0;
         }
         return count;
     }
@@ -48,6 +60,7 @@ private:
 
     ShareWriter& writer_;
     RankExecutor& executor_;
+    std::span<Pair> room_;
     unsigned writes_ = 0;
 };
 
@@ -73,24 +86,20 @@ void RankExecutor::for_each_writing(std::size_t count, const std::function<void(
 
 RankPasses::RankPasses(unsigned threads)
     : ThreadPasses(threads, [this](const ThreadScan& scan) {
-          RankExecutor wanted(scan.executor, *stops_, wanted_);
-          scan_octants({scan.call, wanted, scan.progress}, {octree(), share_.begin, share_.end}, searched(scan.call));
+          const EntrySource& source = searched(scan.call);
+          RankExecutor named(scan.executor, *stops_, {source.join(), share_.positions, wanted_});
+          scan_octants({scan.call, named, scan.progress}, {octree(), share_.begin, share_.end}, source);
       }) {}
 
 void RankPasses::build(Call& call, double progress) {
-    TeamExecutor threads(team());
-    RankExecutor executor(threads, *stops_);
-    positioned_.reset();
-    if (share_.positions) positioned_.emplace(call.source, *share_.positions);
-    build_octree(call, progress,
-                 [&] { octree().build(std::move(share_.layout), searched(call), executor, call.stop.get_token()); });
+    build_octree(call, progress, [&] {
+        if (!share_.layout) return;
+        TeamExecutor threads(team());
+        RankExecutor executor(threads, *stops_);
+        octree().build(std::move(*share_.layout), searched(call), executor, call.stop.get_token());
+        share_.layout.reset();
+    });
     call.summary.entries = octree().entry_count(share_.begin, share_.end);
-}
-
-/// Returns the source of the octree.
-const EntrySource& RankPasses::searched(const Call& call) const {
-    if (positioned_) return *positioned_;
-    return call.source;
 }
 
 void RankPasses::count_rows(Call& call, const RowBins& bins, std::span<std::uint64_t> counts, double progress) {

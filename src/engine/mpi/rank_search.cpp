@@ -10,6 +10,7 @@
 #include "boxes/invalid_box.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/relay.hpp"
+#include "engine/mpi/entries/postponed_pairs.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/order/ascending_pieces.hpp"
 #include "engine/mpi/order/index_order.hpp"
@@ -109,9 +110,62 @@ void RankSearch::find(RankCall& rank_call) {
         passes_.set_share(plan_alone(rank_call, own), rank_call.stops);
         return search(rank_call, {first, second, asked.options});
     }
-    passes_.set_share(plan_and_route(rank_call, own), rank_call.stops);
+    std::optional<OctreePlanning> planning;
+    plan(rank_call, own, planning);
+    if (can_send_entries(rank_call, *planning)) {
+        if (find_by_entries(rank_call, own, *planning)) return;
+        plan(rank_call, own, planning);
+    }
+    passes_.set_share(exchange_boxes(rank_call, own, *planning), rank_call.stops);
     const Objects first_received = received(0), second_received = received(1);
     search(rank_call, {first_received, rank_call.joint.join ? &second_received : nullptr, asked.options});
+}
+
+/// Returns false, with no pairs found, if boxes must be sent.
+bool RankSearch::find_by_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning) {
+    const Objects* const second = rank_call.joint.join ? &rank_call.slices[1] : nullptr;
+    try {
+        passes_.set_share(exchange_entries(rank_call, own, planning), rank_call.stops);
+        search(rank_call, {rank_call.slices[0], second, rank_call.request.options});
+        return true;
+    } catch (const NeedsBoxes&) {
+        count_path(Path::ranks_bounds_missing);
+        objects_with_boxes_ = rank_call.joint.objects();
+        rank_call.known.reset();
+        detail::storage_of(found_).reset();
+        if (rank_call.output.list != nullptr) detail::storage_of(*rank_call.output.list).reset();
+        return false;
+    }
+}
+
+/// Runs a pass over the octree on all ranks.
+/// Throws: as Agreement::together; NeedsBoxes.
+void RankSearch::run_pass(RankCall& rank_call, const std::function<void()>& pass) {
+    std::uint64_t missing = 0;
+    rank_call.agreement.together([&] {
+        try {
+            pass();
+        } catch (const MissingBounds&) {
+            missing = 1;
+        }
+    });
+    if (rank_call.known && comm_.sum(missing) > 0) throw NeedsBoxes{};
+}
+
+/// Returns those of the found pairs that the pair rule refuses: none unless entries were sent.
+std::vector<Pair> RankSearch::settle(RankCall& rank_call) {
+    if (!rank_call.known) return {};
+    const CostMeter meter(comm_, costs_.scan);
+    return refused_pairs(comm_, rank_call.joint, rank_call.slices, rank_call.known->take_postponed());
+}
+
+/// Removes the pairs that the pair rule refuses from a list of the found pairs.
+void RankSearch::drop_refused(RankCall& rank_call, detail::PairStorage& list) {
+    std::vector<Pair> refused = settle(rank_call);
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.scan);
+        remove_pairs(list, std::move(refused));
+    });
 }
 
 void RankSearch::search(RankCall& rank_call, const detail::Request& own_octants) {
@@ -247,11 +301,12 @@ void RankSearch::build(RankCall& rank_call, Call& call) {
 
 void RankSearch::count(RankCall& rank_call, Call& call) {
     std::uint64_t pairs = 0;
-    rank_call.agreement.together([&] {
+    run_pass(rank_call, [&] {
         build(rank_call, call);
         const CostMeter meter(comm_, costs_.scan);
         pairs = passes_.count(call, 1);
     });
+    pairs -= settle(rank_call).size();
     (void)octopair::allowed(comm_.all_gather(pairs), comm_.rank(), rank_call.request.options, rank_call.summary);
 }
 
@@ -283,16 +338,20 @@ void RankSearch::find_octal(RankCall& rank_call, Call& call) {
     };
     if (rank_call.relay) {
         pairs = relay_octal(rank_call, call, {build_first, stream, allowance});
+    } else if (rank_call.output.list != nullptr && !limit) {
+        detail::PairStorage& list = detail::storage_of(*rank_call.output.list);
+        run_pass(rank_call, [&] {
+            build_first();
+            const CostMeter meter(comm_, costs_.scan);
+            passes_.list_octal(call, list, 1);
+        });
+        drop_refused(rank_call, list);
+        pairs = list.size;
     } else {
         rank_call.agreement.together([&] {
             build_first();
             const CostMeter meter(comm_, costs_.scan);
-            if (rank_call.output.list != nullptr && !limit) {
-                passes_.list_octal(call, detail::storage_of(*rank_call.output.list), 1);
-                pairs = rank_call.output.list->size();
-            } else {
-                pairs = receive(rank_call.output, allowance, stream);
-            }
+            pairs = receive(rank_call.output, allowance, stream);
         });
     }
     if (!limit)
@@ -338,13 +397,14 @@ void RankSearch::find_ascending(RankCall& rank_call, Call& call) {
     }
     // Pairs that are not returned as a whole list must fit into buffer_bytes.
     std::uint64_t over = 0;
-    rank_call.agreement.together([&] {
+    run_pass(rank_call, [&] {
         build(rank_call, call);
         const CostMeter meter(comm_, costs_.scan);
         const auto most = whole ? std::optional<std::uint64_t>() : call.buffer_pairs() / 2;
         over = list_octal(call, most) ? 0 : 1;
     });
     if (comm_.sum(over) > 0) return find_windows(rank_call, call);
+    drop_refused(rank_call, detail::storage_of(found_));
     const CostMeter meter(comm_, costs_.order);
     AscendingPieces pieces(comm_, passes_.threads(), rank_call.joint.columns(),
                            [&](std::uint64_t pairs) { call.progress.add(pairs); });

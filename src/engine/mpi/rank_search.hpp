@@ -1,11 +1,19 @@
 // RankSearch: runs a call on one rank, from its slice of the objects to its piece of the pairs.
 //
 //   join    combines the calls of all ranks and checks that they agree                        (joint_call.hpp)
-//   plan    chooses the top of the octree, from the sample that the local engine takes        (octree_planning.hpp)
+//   plan    chooses the octants of the octree, from the sample that the local engine takes    (octree_planning.hpp)
 //   cut     divides the pre-order of these octants into a run of octants for each rank        (octant_owners.hpp)
+//
+//   then either entries are sent, which are few bytes and are encoded once,
+//   encode  makes the entries of the rank's objects                                           (linear_octree.hpp)
+//   send    sends each entry to the rank that owns its octant                                 (entry_exchange.hpp)
+//   scan    scans the rank's octants. Pairs in doubt are kept                                 (rank_passes.hpp)
+//   settle  fetches the boxes of the pairs in doubt, and drops those that are no pairs        (postponed_pairs.hpp)
+//
+//   or, if many boxes will be needed, or if pairs cannot wait until the scan has ended, boxes are sent:
 //   route   sends each object to the ranks whose octants it touches                           (routing.hpp)
-//   grow    divides the rank's own octants further                                            (octree_planning.hpp)
 //   search  builds the rank's octree and scans the rank's octants, like the local engine      (rank_passes.hpp)
+//
 //   order   for ascending order: sends each pair to the rank that its `a` belongs to, which
 //           sorts its pairs                                                                   (ascending_pieces.hpp)
 //
@@ -26,6 +34,9 @@
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/communicator.hpp"
 #include "engine/mpi/comm/relay.hpp"
+#include "engine/mpi/entries/entry_exchange.hpp"
+#include "engine/mpi/entries/inner_entries.hpp"
+#include "engine/mpi/entries/known_boxes.hpp"
 #include "engine/mpi/joint_call.hpp"
 #include "engine/mpi/order/index_order.hpp"
 #include "engine/mpi/partition/object_exchange.hpp"
@@ -96,6 +107,10 @@ private:
         JointCall joint;
         std::array<Objects, 2> slices;
         IndexOrder order;  // used by indexed calls only
+        // If entries were sent:
+        std::optional<InnerEntries> inner;
+        std::array<ObjectArrays, 2> fetched;  // by set
+        std::optional<KnownBoxes> known;
         Summary summary;
         unsigned sets() const { return joint.join ? 2 : 1; }
     };
@@ -108,13 +123,21 @@ private:
     void gather_pieces(PairList& piece, detail::PairStorage& all);
     void find(RankCall& rank_call);
     void join(RankCall& rank_call);
+    /// Exception, thrown on all ranks, if boxes must be sent in place of entries.
+    struct NeedsBoxes {};
     RankShare plan_alone(RankCall& rank_call, const BoxSource& own);
-    RankShare plan_and_route(RankCall& rank_call, const BoxSource& own);
-    OctantOwners route(RankCall& rank_call, const BoxSource& own, const OctreePlanning& planning);
-    RankShare grow(RankCall& rank_call, OctreePlanning& planning, const OctantOwners& owners);
+    void plan(RankCall& rank_call, const BoxSource& own, std::optional<OctreePlanning>& planning);
+    bool can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) const;
+    RankShare exchange_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
+    bool check_entries(const LinearOctree& octree, std::span<const std::uint32_t> entries);
+    RankShare exchange_boxes(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
     void exchange_objects(RankCall& rank_call, Executor& executor, const Routing& routing);
+    bool find_by_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
     Objects received(unsigned set) const { return exchanged_[set].received.view(); }
     void search(RankCall& rank_call, const detail::Request& own_octants);
+    void run_pass(RankCall& rank_call, const std::function<void()>& pass);
+    std::vector<Pair> settle(RankCall& rank_call);
+    void drop_refused(RankCall& rank_call, detail::PairStorage& list);
     void build(RankCall& rank_call, Call& call);
     void count(RankCall& rank_call, Call& call);
     void find_octal(RankCall& rank_call, Call& call);
@@ -131,6 +154,8 @@ private:
     RankPasses passes_;
     std::array<ObjectExchange::Memory, 2> exchanged_;
     Routing::Memory routing_;
+    EntryExchange::Memory entries_;
+    std::uint64_t objects_with_boxes_ = 0;  // number of objects of the last call that could not send entries
     PairList found_;
     RankCosts costs_;
 };

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/memory.hpp"
+#include "base/private_export.hpp"
 #include "boxes/entry.hpp"
 
 namespace octopair {
@@ -28,7 +29,7 @@ struct ObjectBlock {
     std::size_t begin = 0, end = 0;
 };
 
-class ChunkLists {
+class OCTOPAIR_PRIVATE_EXPORT ChunkLists {
 public:
     explicit ChunkLists(PageSource& pages) : entries_(pages), next_(pages), ends_(pages) {}
 

@@ -256,6 +256,7 @@ void LinearOctree::fill(const EntrySource& source, Executor& executor, const std
                         TimePoint step_begin) {
     const auto blocks = blocks_of(source.size(), executor.width());
     const auto ranges = ranges_of(octants().size(), blocks.size(), executor.width());
+    arranged_.reset();
     memory_.resize(source.size(), blocks.size(), octants().size(), ranges.size());
     count_path(blocks.size() == 1 ? Path::build_one_block : Path::build_blocks);
     if (ranges.size() > 1) count_path(Path::count_ranges);
@@ -293,6 +294,16 @@ void LinearOctree::join_ranges(std::span<const NumberedOctants> ranges) {
         at += memory_.totals[range.number];
     }
     begins_.back() = at;
+}
+
+void LinearOctree::arrange(EntryRuns runs) {
+    std::uint64_t at = 0;
+    for (OctantIndex octant = 0; octant < octants().size(); ++octant) {
+        begins_[octant] = at;
+        for (const auto run : runs.of(octant)) at += run.size();
+    }
+    begins_.back() = at;
+    arranged_ = std::move(runs);
 }
 
 std::vector<CellEntry> LinearOctree::entries(OctantIndex octant) const {

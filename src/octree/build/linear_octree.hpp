@@ -24,6 +24,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -76,6 +77,19 @@ struct NumberedOctants {
     OctantIndex begin, end;
 };
 
+/// The two lists of an octant.
+enum class OctantList : std::uint8_t { home, ghosts };
+
+/// Runs of adjacent entries, by octant: those of octant i are runs[begins[i]] to runs[begins[i + 1] - 1]. Borrows the entries.
+struct EntryRuns {
+    std::vector<std::span<const CellEntry>> runs;
+    std::vector<std::size_t> begins;
+
+    std::span<const std::span<const CellEntry>> of(OctantIndex octant) const {
+        return std::span(runs).subspan(begins[octant], begins[octant + 1] - begins[octant]);
+    }
+};
+
 class OCTOPAIR_PRIVATE_EXPORT LinearOctree {
 public:
     LinearOctree() = default;
@@ -99,14 +113,32 @@ public:
     /// Throws as build() does.
     void refill(const EntrySource& source, Executor& executor, std::stop_token stop);
 
+    /// Replaces the entries of all octants by `runs`, until the next build. The runs may contain entries of for_each_run(). So entries
+    /// that several octrees built of parts of the objects, with the same octants, become the octree of all objects.
+    void arrange(EntryRuns runs);
+    /// Returns the runs of an octant. Requires: arrange() after the last build.
+    std::span<const std::span<const CellEntry>> arranged_runs(OctantIndex octant) const {
+        return arranged_->of(octant);
+    }
+
     const Space& space() const { return layout_.space; }
     std::span<const Octant> octants() const { return layout_.directory.octants(); }
     const Directory& directory() const { return layout_.directory; }
     /// Calls visit(entries) for each run of adjacent entries of an octant, in order.
     template <typename Visit>
     void for_each_run(OctantIndex octant, Visit&& visit) const {
-        memory_.lists.for_each_run(memory_.home_list(octant), visit);
-        memory_.lists.for_each_run(memory_.ghost_list(octant), visit);
+        if (arranged_) {
+            for (const auto run : arranged_->of(octant)) visit(run);
+            return;
+        }
+        for_each_run(octant, OctantList::home, visit);
+        for_each_run(octant, OctantList::ghosts, visit);
+    }
+    /// As above, for one list of the octant, as it was built.
+    template <typename Visit>
+    void for_each_run(OctantIndex octant, OctantList list, Visit&& visit) const {
+        const bool home = list == OctantList::home;
+        memory_.lists.for_each_run(home ? memory_.home_list(octant) : memory_.ghost_list(octant), visit);
     }
     /// Returns a copy of the entries of an octant, in order.
     std::vector<CellEntry> entries(OctantIndex octant) const;
@@ -125,6 +157,7 @@ private:
     OctreeLayout layout_;
     std::vector<std::uint64_t> begins_ = {0, 0};  // position of each octant's first entry, and the number of entries
     BuildMemory memory_{own_pages()};
+    std::optional<EntryRuns> arranged_;
     BuildSeconds seconds_;
 };
 

@@ -65,13 +65,20 @@ OctantCounts OctantCounts::of(const SampledOctant& sampled, const std::array<Sam
 bool SplitRule::is_crowd(std::uint64_t inside) const { return double(inside) * weight_ > tuning().split.always_above; }
 
 bool SplitRule::crowded(const SampledOctant& sampled) const {
-    const OctantCube& octant = sampled.octant;
     const double objects = double(sampled.inside.size()) * weight_;
     if (objects <= tuning().split.never_up_to) {
         count_path(Path::octant_too_small);
         return false;
     }
     if (is_crowd(sampled.inside.size())) return true;
+    const bool wide = tests_per_object(sampled) > tuning().split.max_tests_per_object;
+    if (!wide) count_path(Path::octant_well_swept);
+    return wide;
+}
+
+double SplitRule::tests_per_object(const SampledOctant& sampled) const {
+    const OctantCube& octant = sampled.octant;
+    const double objects = double(sampled.inside.size()) * weight_;
     double window = objects;
     for (unsigned axis = 0; axis < 3; ++axis) {
         std::uint32_t first = cells_per_axis;
@@ -87,9 +94,12 @@ bool SplitRule::crowded(const SampledOctant& sampled) const {
         const double extent = double(extents) / double(sampled.inside.size());
         window = std::min(window, objects * extent / (double(last - first) + extent));
     }
-    const bool wide = window > tuning().split.max_tests_per_object;
-    if (!wide) count_path(Path::octant_well_swept);
-    return wide;
+    return window;
+}
+
+bool SplitRule::is_too_large_for_sweep(std::uint64_t boxes, double tests) const {
+    const double objects = double(boxes) * weight_;
+    return objects > double(tuning().scan.max_swept_list) || tests > double(tuning().scan.max_tests_per_box);
 }
 
 bool SplitRule::worth_splitting(const OctantCounts& counts) {
@@ -98,19 +108,23 @@ bool SplitRule::worth_splitting(const OctantCounts& counts) {
                tuning().split.max_handed_growth * double(counts.inside + counts.kept);
 }
 
-void SplitRule::grow(SampledOctant sampled, SplitFlags& shape) const {
+void SplitRule::grow(SampledOctant sampled, SplitFlags& shape, const CrowdSink& crowd) const {
     throw_if_stopped(stop_);
     const std::size_t index = shape.size();
     shape.push_back(0);
     sampled.keep();
-    if (sampled.octant.level >= deepest) return count_path(Path::octant_deepest);
+    const auto stays_whole = [&](Path reason) {
+        count_path(reason);
+        if (crowd) crowd(sampled, index);
+    };
+    if (sampled.octant.level >= deepest) return stays_whole(Path::octant_deepest);
     if (!crowded(sampled)) return;
     std::array<SampledOctant, 8> below = sampled.divided();
-    if (!worth_splitting(OctantCounts::of(sampled, below))) return count_path(Path::octant_multiplies);
+    if (!worth_splitting(OctantCounts::of(sampled, below))) return stays_whole(Path::octant_multiplies);
     count_path(Path::octant_divided);
     sampled = {};
     shape[index] = 1;
-    for (SampledOctant& child : below) grow(std::exchange(child, {}), shape);
+    for (SampledOctant& child : below) grow(std::exchange(child, {}), shape, crowd);
 }
 
 Sample octant_sample(std::uint64_t objects) {

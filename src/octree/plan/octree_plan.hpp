@@ -18,6 +18,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <stop_token>
 #include <utility>
@@ -59,15 +60,24 @@ public:
     /// `weight`: number of objects that a sampled box represents.
     SplitRule(double weight, std::stop_token stop) : weight_(weight), stop_(std::move(stop)) {}
 
+    /// Returns the number of objects that sampled boxes represent.
+    double objects(std::uint64_t boxes) const { return double(boxes) * weight_; }
     /// True if `inside` sampled boxes are too many for one octant, wherever they are in it.
     bool is_crowd(std::uint64_t inside) const;
     bool crowded(const SampledOctant& sampled) const;
+    /// True if a sweep on cells of this many sampled boxes would cost too much. `tests`: tests of the sweep for each box.
+    bool is_too_large_for_sweep(std::uint64_t boxes, double tests) const;
     /// True if dividing a crowded octant multiplies neither entries nor boxes handed down.
     static bool worth_splitting(const OctantCounts& counts);
 
+    /// Receives a leaf that is crowded, but not worth dividing, and its place in the shape.
+    using CrowdSink = std::function<void(const SampledOctant& leaf, std::size_t place)>;
     /// Divides an octant as far as the rule says, and appends the shape of its subtree to `shape`.
     /// Throws: Error{cancelled}.
-    void grow(SampledOctant sampled, SplitFlags& shape) const;
+    void grow(SampledOctant sampled, SplitFlags& shape, const CrowdSink& crowd = {}) const;
+
+    /// Returns an estimate of the number of others that a sweep of the octant along its best axis tests each object against.
+    double tests_per_object(const SampledOctant& sampled) const;
 
 private:
     double weight_;

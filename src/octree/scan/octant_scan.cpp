@@ -21,7 +21,8 @@ bool try_lay_out(std::span<const CellEntry> entries, CellSet& set) {
 
 void OctantScan::scan(OctantIndex octant, std::span<const Entry> handed) {
     if constexpr (has_test_hooks) {
-        if (context_.nesting == 0) context_.outermost = OutermostOctant{octree_.space(), octree_.octants()[octant]};
+        if (context_.nesting == 0 && context_.source.has_all_bounds())
+            context_.outermost = OutermostOctant{octree_.space(), octree_.octants()[octant]};
     }
     octant_ = octant;
     handed_ = handed;

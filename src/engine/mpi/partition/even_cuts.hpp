@@ -26,8 +26,8 @@ inline std::vector<std::size_t> even_cuts(std::span<const std::uint64_t> work, s
     return begins;
 }
 
-/// Returns cuts in the form of even_cuts(). Minimizes the work of the part with most work: it exceeds the minimum by at most about a
-/// thousandth of the mean. Later parts may have less work than earlier parts.
+/// Returns cuts in the form of even_cuts(). Minimizes the work of the part with most work: it exceeds the minimum by at most about
+/// 1/256 of the mean. Later parts may have less work than earlier parts.
 /// Source: Pinar, Aykanat 2004, Fast optimal load balancing algorithms for 1D partitioning.
 inline std::vector<std::size_t> least_cuts(std::span<const std::uint64_t> work, std::size_t parts) {
     std::vector<std::uint64_t> sums(work.size() + 1, 0);
@@ -46,7 +46,7 @@ inline std::vector<std::size_t> least_cuts(std::span<const std::uint64_t> work, 
     const std::uint64_t largest = work.empty() ? 0 : *std::ranges::max_element(work);
     std::uint64_t too_little = std::max(mean, largest), enough = mean + largest + 1;
     if (too_little > 0) --too_little;
-    while (enough - too_little > mean / 1000 + 1) {
+    while (enough - too_little > mean / 256 + 1) {
         const std::uint64_t middle = too_little + (enough - too_little) / 2;
         (fill(middle) ? enough : too_little) = middle;
     }

@@ -3,9 +3,9 @@
 // Such an octant may be divided further in the whole octree. Then its owner owns all of its descendants.
 //
 // Invariants 1. Each rank owns one run of the pre-order of the octree. A run may be empty.
-//            2. An object belongs to each rank that owns an octant with an entry of the object.
-//            3. If an entry is kept in an inner octant, the object also belongs to each rank that owns a descendant that the
-//               box touches. So a rank has all objects that are handed down to its octants.
+//            2. An object, or an entry of it, belongs to each rank that owns an octant with an entry of the object.
+//            3. If an entry is kept in an inner octant, it also belongs to each rank that owns a descendant that the box touches.
+//               So a rank has all entries that are handed down to its octants.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "engine/mpi/partition/shared_top.hpp"
 #include "octree/build/encoder.hpp"
 #include "octree/plan/directory.hpp"
 
@@ -21,11 +20,10 @@ namespace octopair {
 
 class OctantOwners {
 public:
-    /// Divides the octants of `top` into one run for each rank, so that the run with most work has as little work as possible. The
-    /// result depends only on the arguments. `directory`: of the octants of `top`; borrowed. `entries`: number of entries of each
-    /// octant, summed over all ranks, in any unit.
-    OctantOwners(const SharedTop& top, const Directory& directory, std::span<const std::uint32_t> entries,
-                 unsigned ranks);
+    OctantOwners() = default;
+    /// Divides the octants into one run for each rank, so that the run with most work has as little work as possible. The result depends
+    /// only on the arguments. `work`: estimated work in each octant that all ranks store.
+    OctantOwners(std::span<const std::uint64_t> work, unsigned ranks);
 
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
     OctantIndex begin(unsigned rank) const { return OctantIndex(begins_[rank]); }
@@ -48,28 +46,27 @@ public:
     bool is_shared(const Reach& reach) const { return owner(reach.first) != owner(reach.last); }
 
     /// Calls place(rank) for each rank that a box belongs to, possibly more than once. `home`: the leaf of its low corner.
-    /// Requires: the box extends beyond `home`.
+    /// `directory`: of the octants that all ranks store. Requires: the box extends beyond `home`.
     template <typename Place>
-    void for_each_owner(const CellBox& box, Directory::Leaf home, Place&& place) const {
-        for_each_octant_of(box, directory_, home,
-                           [&](OctantIndex octant, unsigned) { add_owners(box, octant, place); });
+    void for_each_owner(const CellBox& box, const Directory& directory, Directory::Leaf home, Place&& place) const {
+        for_each_octant_of(box, directory, home,
+                           [&](OctantIndex octant, unsigned) { for_each_owner_below(box, directory, octant, place); });
     }
 
-private:
-    /// Calls place(rank) for the owner of `octant`, and for the owner of each descendant that the box touches.
+    /// Calls place(rank) for the owner of `octant`, and for the owner of each descendant that the box touches, possibly more than once.
     /// Requires: the box touches `octant`.
     template <typename Place>
-    void add_owners(const CellBox& box, OctantIndex octant, Place& place) const {
-        const Octant& parent = directory_.octants()[octant];
+    void for_each_owner_below(const CellBox& box, const Directory& directory, OctantIndex octant, Place& place) const {
+        const Octant& parent = directory.octants()[octant];
         place(owner(octant));
         if (owner(parent.next - 1) == owner(octant)) return;
         for (unsigned digit = 0; digit < 8; ++digit) {
-            const OctantIndex child = directory_.child(parent, digit);
-            if (directory_.octants()[child].touches(box)) add_owners(box, child, place);
+            const OctantIndex child = directory.child(parent, digit);
+            if (directory.octants()[child].touches(box)) for_each_owner_below(box, directory, child, place);
         }
     }
 
-    const Directory& directory_;
+private:
     std::vector<std::size_t> begins_;
     std::vector<std::uint32_t> owners_;
 };

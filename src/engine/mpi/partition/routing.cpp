@@ -143,7 +143,7 @@ void Routing::share(Block& block, std::span<const Crosser> crossers) const {
         owners = {owners_->owner(crosser.reach.first), owners_->owner(crosser.reach.last)};
         if (!crosser.reach.only) {
             owners.clear();
-            owners_->for_each_owner(*next, layout_.directory.leaf(next->lo),
+            owners_->for_each_owner(*next, layout_.directory, layout_.directory.leaf(next->lo),
                                     [&](std::uint32_t owner) { owners.push_back(owner); });
             std::ranges::sort(owners);
             owners.erase(std::unique(owners.begin(), owners.end()), owners.end());

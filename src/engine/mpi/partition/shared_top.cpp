@@ -36,12 +36,12 @@ public:
 private:
     static constexpr double fraction_unit = 1 << 10;  // fractions are summed as integers, in units of 1 / fraction_unit
 
-    enum class State : std::uint8_t { left, whole, divided };
     struct Octant {
         OctantCube octant;
-        State state = State::left;
+        bool divided = false;
         std::uint32_t below = 0;  // index in octants_ of the first of its eight children
         OctantIndex number = 0;   // its number in the pre-order of `top`
+        std::uint32_t boxes = 0;
         double shortest = 0, overlap = 0;
     };
     /// A box of the sample and an octant that it touches.
@@ -104,16 +104,19 @@ private:
         const double unit = fraction_unit * double(std::max<std::uint64_t>(1, boxes));
         octants_[i].shortest = double(sums[shortest]) / unit;
         octants_[i].overlap = double(sums[overlapped]) / unit;
+        octants_[i].boxes = std::uint32_t(boxes);
         if (octant.level >= deepest || boxes <= most_ || !rule_.is_crowd(sums[inside])) return;
         const bool divided = SplitRule::worth_splitting({.inside = sums[inside],
                                                          .kept = sums[kept],
                                                          .beginning = sums[beginning],
                                                          .inside_below = sums[inside_below],
                                                          .kept_below = sums[kept_below]});
-        if (divided) count_path(Path::ranks_top_divided);
-        octants_[i].state = divided ? State::divided : State::whole;
+        if (!divided) return;
+        count_path(Path::ranks_top_divided);
+        octants_[i].divided = true;
+        octants_[i].boxes = 0;
         octants_[i].below = std::uint32_t(octants_.size());
-        for (unsigned digit = 0; divided && digit < 8; ++digit) octants_.push_back({octant.child(digit)});
+        for (unsigned digit = 0; digit < 8; ++digit) octants_.push_back({octant.child(digit)});
     }
 
     void hand_down() {
@@ -121,9 +124,8 @@ private:
         next.reserve(touched_.size() + touched_.size() / 2);
         for (const Touched& box : touched_) {
             const Octant& octant = octants_[box.octant];
-            if (octant.state == State::left) left_.push_back(box);
-            if (octant.state != State::divided) continue;
-            for (unsigned below = box.below; below != 0; below &= below - 1)
+            if (!octant.divided) left_.push_back(box);
+            for (unsigned below = octant.divided ? box.below : 0; below != 0; below &= below - 1)
                 next.push_back({octant.below + std::uint32_t(std::countr_zero(below)), box.box, box.kept});
         }
         touched_ = std::move(next);
@@ -133,10 +135,9 @@ private:
     void append(std::size_t i, SharedTop& top) {
         Octant& octant = octants_[i];
         octant.number = OctantIndex(top.octants_.size());
-        const bool divided = octant.state == State::divided;
-        top.octants_.push_back({octant.octant, octant.state == State::left, octant.shortest, octant.overlap});
-        top.shape_.push_back(divided ? 1 : 0);
-        for (std::size_t digit = 0; divided && digit < 8; ++digit) append(octant.below + digit, top);
+        top.octants_.push_back({octant.octant, !octant.divided, octant.boxes, octant.shortest, octant.overlap});
+        top.shape_.push_back(octant.divided ? 1 : 0);
+        for (std::size_t digit = 0; octant.divided && digit < 8; ++digit) append(octant.below + digit, top);
     }
 
     Communicator& comm_;

@@ -1,7 +1,7 @@
 // SharedTop: the octants at the top of the octree, which all ranks divide together and store.
 //
 // The ranks divide octants level by level. Each rank counts its own part of the sample, and the sums over all ranks decide. An
-// octant is "left" when it has few boxes of the sample. The rank that owns a left octant grows its subtree alone.
+// octant is "left" when it has few boxes of the sample, or is not worth dividing. One rank grows the subtree of a left octant alone.
 //
 // Invariants 1. The octants and their states are the same on all ranks.
 //            2. The octree that the local engine grows from the same sample has all octants of the shared top. There, only left
@@ -28,7 +28,8 @@ public:
     };
     struct SharedOctant {
         OctantCube octant;
-        bool left;  ///< the owner may divide this octant further
+        bool left;            ///< a leaf of the shared top
+        std::uint32_t boxes;  ///< number of boxes of the sample, of all ranks, that touch the octant and are not handed down below
         // Means over the sampled boxes that touch the octant.
         double shortest;  ///< extent on the shortest axis, in sides of the octant
         double overlap;   ///< estimated fraction of the octant's boxes that one of its boxes overlaps
@@ -38,7 +39,7 @@ public:
     /// of this rank's part of the sample. Throws: as Agreement::together.
     SharedTop(Communicator& comm, const SplitRule& growth, std::uint64_t most, std::span<const CellBox> own);
 
-    /// Returns the shape of the shared top. Left octants are leaves there.
+    /// Returns the shape of the shared top. Its leaves are the left octants.
     const SplitFlags& shape() const { return shape_; }
     /// Returns the octants of the shared top, in pre-order.
     std::span<const SharedOctant> octants() const { return octants_; }

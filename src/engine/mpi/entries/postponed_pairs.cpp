@@ -1,0 +1,89 @@
+#include "engine/mpi/entries/postponed_pairs.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "base/test_hooks.hpp"
+#include "engine/mpi/comm/agreement.hpp"
+#include "engine/mpi/entries/known_boxes.hpp"
+#include "engine/mpi/entries/object_fetch.hpp"
+
+namespace octopair {
+
+std::vector<Pair> refused_pairs(Communicator& comm, const JointCall& call, const std::array<Objects, 2>& slices,
+                                std::vector<Pair> postponed) {
+    Agreement agreement(comm);
+    std::array<std::vector<std::uint32_t>, 2> wanted;
+    const auto second_begin = call.join ? std::uint32_t(call.totals[0]) : 0;
+    agreement.together([&] {
+        for (const Pair& pair : postponed) {
+            wanted[0].push_back(pair.a);
+            wanted[call.join ? 1 : 0].push_back(pair.b - second_begin);
+        }
+        for (auto& positions : wanted) {
+            std::ranges::sort(positions);
+            positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+        }
+    });
+    std::array<ObjectArrays, 2> fetched;
+    for (unsigned set = 0; set < (call.join ? 2 : 1); ++set)
+        fetched[set] = fetch_objects(comm, {call, set, slices[set]}, wanted[set]);
+    agreement.together([&] {
+        if (!postponed.empty()) count_path(Path::ranks_pair_postponed);
+        const KnownBoxes boxes(call, fetched);
+        std::erase_if(postponed, [&](const Pair& pair) { return boxes.is_pair(pair.a, pair.b); });
+        if (!postponed.empty()) count_path(Path::ranks_pair_refused);
+        for (Pair& pair : postponed) pair.b -= second_begin;
+    });
+    return postponed;
+}
+
+namespace {
+
+/// A set of pairs. For most other pairs, may_have() is false.
+class PairFilter {
+public:
+    explicit PairFilter(std::vector<Pair> pairs)
+        : pairs_(std::move(pairs)),
+          shift_(64 - unsigned(std::bit_width(64 * pairs_.size()))),
+          marks_(std::size_t(1) << (64 - shift_), 0) {
+        std::ranges::sort(pairs_);
+        for (const Pair& pair : pairs_) marks_[hash(pair)] = 1;
+    }
+    std::uint8_t may_have(const Pair& pair) const { return marks_[hash(pair)]; }
+    bool has(const Pair& pair) const { return may_have(pair) != 0 && std::ranges::binary_search(pairs_, pair); }
+
+private:
+    std::size_t hash(const Pair& pair) const {
+        return std::size_t((std::uint64_t(pair.a) << 32 | pair.b) * 0x9E3779B97F4A7C15ull >> shift_);
+    }
+
+    std::vector<Pair> pairs_;
+    unsigned shift_;
+    std::vector<std::uint8_t> marks_;  // by hash: 1 if a pair has this hash
+};
+
+}  // namespace
+
+void remove_pairs(detail::PairStorage& list, std::vector<Pair> removed) {
+    if (removed.empty()) return;
+    const PairFilter filter(std::move(removed));
+    list.keep_some([&](std::span<Pair> pairs) {
+        constexpr std::size_t most = 64;  // pairs that are tested at a time, without a branch for each
+        Pair* out = pairs.data();
+        for (std::size_t begin = 0; begin < pairs.size(); begin += most) {
+            const auto some = pairs.subspan(begin, std::min(most, pairs.size() - begin));
+            unsigned marks = 0;
+            for (const Pair& pair : some) marks |= filter.may_have(pair);
+            if (marks == 0) {
+                out = out == some.data() ? out + some.size() : std::copy(some.begin(), some.end(), out);
+            } else {
+                out = std::remove_copy_if(some.begin(), some.end(), out, [&](const Pair& pair) { return filter.has(pair); });
+            }
+        }
+        return std::size_t(out - pairs.data());
+    });
+}
+
+}  // namespace octopair
