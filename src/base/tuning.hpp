@@ -71,7 +71,7 @@ struct Tuning {
         std::size_t max_share_entries = 1 << 13;  ///< maximum entries per share: a stop request is noticed soon
         std::size_t shares_per_thread = 64;       ///< number of shares per thread
         std::size_t max_swept_list = 65535;       ///< maximum entries of a set that is swept on cells; do not raise
-        std::uint64_t max_tests_per_box = 192;    ///< maximum number of tests per box in a sweep on cells
+        std::uint64_t max_tests_per_box = 384;    ///< maximum number of tests per box in a sweep on cells
         double max_whole_crowd = 0.25;            ///< a part with more of an octree's entries is collected as ids
         double max_part_in_octant = 0.75;         ///< a nested octree with more of its entries in one octant is dropped
         double max_growth = 4;                    ///< maximum growth of entries: the product over nested octrees
