@@ -78,10 +78,10 @@ Agreement::Outcome Agreement::outcome_of(const std::function<void()>& part) {
 
 void Agreement::together(const std::function<void()>& part) {
     Outcome own = outcome_of(part);
+    if (comm_.sum(own.header.kind == OutcomeKind::good ? 0 : 1) == 0) return;
     own.header.length = std::uint32_t(own.message.size());
     const std::vector<OutcomeHeader> all = comm_.all_gather(own.header);
     const auto first = std::min_element(all.begin(), all.end(), precedes);
-    if (first->kind == OutcomeKind::good) return;
     const unsigned rank = unsigned(first - all.begin());
     std::string message = own.message;
     message.resize(first->length);

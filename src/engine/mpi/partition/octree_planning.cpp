@@ -136,7 +136,11 @@ std::uint64_t OctantEstimate::work(double entries) const {
 }
 
 OctreePlanning::OctreePlanning(Communicator& comm, const JointCall& call, const BoxSource& own, std::stop_token stop)
-    : comm_(comm), growth_(split_rule(call.objects(), stop)), exact_(call.form.exact), stop_(std::move(stop)) {
+    : comm_(comm),
+      objects_(call.objects()),
+      growth_(split_rule(call.objects(), stop)),
+      exact_(call.form.exact),
+      stop_(std::move(stop)) {
     Agreement agreement(comm);
     OwnSample sample;
     agreement.together([&] { sample = own_sample(call, own); });
@@ -248,7 +252,7 @@ void OctreePlanning::share(const SharedTop& top, Grown grown) {
             needs_coordinates_ |= parts[rank].needs_coordinates != 0;
         }
     });
-    whole_ = octants <= tuning().ranks.max_shared_octants;
+    whole_ = octants * tuning().ranks.objects_per_octant * comm_.size() <= objects_;
     count_path(whole_ ? Path::ranks_whole_octree : Path::ranks_part_of_octree);
     if (whole_) {
         const SplitFlags shape = comm_.all_gather(std::span<const std::uint8_t>(grown.shape)).values;

@@ -93,6 +93,7 @@ private:
     static unsigned first_fine_level(const Space& space, bool exact);
 
     Communicator& comm_;
+    std::uint64_t objects_;
     SplitRule growth_;
     bool exact_;  // boxes are not rounded
     std::stop_token stop_;
