@@ -1,6 +1,7 @@
 #include "cluster/measured.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -62,15 +63,17 @@ EachRank ranks_of(const Json& json) {
 }  // namespace
 
 std::string_view arrangement_name(Arrangement arrangement) {
-    return arrangement == Arrangement::paper ? "paper" : "shared";
+    constexpr std::array<std::string_view, 4> names = {"shared", "space", "blocks", "paper"};
+    return names[std::size_t(arrangement)];
 }
 
 Arrangement arrangement_of(std::string_view name) {
-    for (const Arrangement arrangement : {Arrangement::shared, Arrangement::paper}) {
+    using enum Arrangement;
+    for (const Arrangement arrangement : {shared, space, blocks, paper}) {
         if (name == arrangement_name(arrangement)) return arrangement;
     }
     throw Error(ErrorCode::usage,
-                "'" + std::string(name) + "' is not an arrangement of ranks; there are: shared, paper");
+                "'" + std::string(name) + "' is not an arrangement of ranks; there are: shared, space, blocks, paper");
 }
 
 double computing(const Costs& costs) {

@@ -16,6 +16,8 @@ namespace octopair::cluster {
 /// How ranks divide the work.
 enum class Arrangement : std::uint8_t {
     shared,  ///< octopair's: each rank has an equal part of the objects, and the ranks share every step
+    space,   ///< the same, but the objects of a rank are near each other: they are sorted along a curve through space
+    blocks,  ///< the same, but each rank has the objects of a block of space. Pairs are counted, not listed
     paper,   ///< the paper's: rank 0 has all objects at first, and merges and scans alone (paper_master.hpp)
 };
 
@@ -32,7 +34,7 @@ struct Setup {
     }
 };
 
-/// Returns "shared" or "paper".
+/// Returns "shared", "space", "blocks" or "paper".
 std::string_view arrangement_name(Arrangement arrangement);
 /// Returns the arrangement with this name. Throws: Error{usage} if no arrangement has this name.
 Arrangement arrangement_of(std::string_view name);

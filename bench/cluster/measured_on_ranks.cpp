@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cluster/paper_master.hpp"
+#include "cluster/regions.hpp"
 #include "cluster/scene_slice.hpp"
 #include "engine/mpi/comm/message_tape.hpp"
 #include "octopair/error.hpp"
@@ -56,8 +57,8 @@ public:
 /// Each rank has an equal part of the objects and shares every step.
 class SharedCalls final : public Calls {
 public:
-    SharedCalls(MPI_Comm comm, std::span<const Box3f> own, std::stop_token stop)
-        : engine_(make_mpi_engine(comm)), own_(own), stop_(std::move(stop)) {}
+    SharedCalls(MPI_Comm comm, std::span<const Box3f> own, bool listed, std::stop_token stop)
+        : engine_(make_mpi_engine(comm)), own_(own), listed_(listed), stop_(std::move(stop)) {}
     SharedCalls(const SharedCalls&) = delete;
     SharedCalls& operator=(const SharedCalls&) = delete;
     ~SharedCalls() override { use_tape(*engine_, nullptr); }
@@ -65,7 +66,10 @@ public:
     Summary call() override {
         Options options;
         options.order = Order::octal;
-        return engine_->find_pairs({own_, {}}, pairs_, options, stop_);
+        if (listed_) return engine_->find_pairs({own_, {}}, pairs_, options, stop_);
+        Summary summary;
+        summary.pairs = engine_->count_pairs({own_, {}}, options, stop_);
+        return summary;
     }
     void begin_alone() override {
         use_tape(*engine_, &tape_);
@@ -81,6 +85,7 @@ public:
 private:
     std::unique_ptr<Engine> engine_;
     std::span<const Box3f> own_;
+    bool listed_;
     std::stop_token stop_;
     PairList pairs_;
     MessageTape tape_;
@@ -126,7 +131,9 @@ public:
         if (paper) {
             calls_ = std::make_unique<PaperCalls>(comm, setup.ranks_per_machine, own_);
         } else {
-            calls_ = std::make_unique<SharedCalls>(comm, own_, stop);
+            if (setup.arrangement == Arrangement::space) own_ = in_order_of_space(comm, std::move(own_));
+            if (setup.arrangement == Arrangement::blocks) own_ = in_blocks(comm, std::move(own_));
+            calls_ = std::make_unique<SharedCalls>(comm, own_, setup.arrangement != Arrangement::blocks, stop);
         }
         measured_.setup = setup;
         measured_.setup.ranks = unsigned(ranks_);

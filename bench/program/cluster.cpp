@@ -59,11 +59,12 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
             [request](const std::vector<std::string>& names) {
                 request->plan.arrangements.clear();
                 for (const std::string& name : names) {
-                    cli::check_value("--arrangement", {"shared", "paper"}, name);
+                    cli::check_value("--arrangement", {"shared", "space", "blocks", "paper"}, name);
                     request->plan.arrangements.push_back(cluster::arrangement_of(name));
                 }
             },
-            "shared (default): ranks share all steps; paper: rank 0 distributes, merges and scans; or both")
+            "shared (default): ranks share all steps; space, blocks: the same, with objects that are already near each other; paper: "
+            "rank 0 distributes, merges and scans; or several of them")
         .type_name("WORD");
     command
         .add_option(

@@ -54,7 +54,7 @@ namespace octopair {
     /* engine/processes/ */ \
     path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) \
     /* engine/mpi/ */ \
-    path(ranks_top_divided) path(ranks_whole_octree) path(ranks_part_of_octree) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed) \
+    path(ranks_top_divided) path(ranks_whole_octree) path(ranks_part_of_octree) path(ranks_regional) path(object_on_ranks) path(ranks_window) path(relay_full) path(relay_listed) \
     path(relay_found_again) path(positions_near) path(positions_far) \
     path(ranks_entries_sent) path(ranks_boxes_sent) path(ranks_crowd_forecast) path(ranks_bounds_missing) path(inner_entry_on_rank) path(inner_entry_on_ranks) \
     path(ranks_pair_postponed) path(ranks_pair_refused) \

@@ -12,6 +12,7 @@
 #include "engine/mpi/entries/object_fetch.hpp"
 #include "engine/mpi/partition/octant_owners.hpp"
 #include "engine/mpi/partition/octree_planning.hpp"
+#include "engine/mpi/partition/regional_owners.hpp"
 #include "engine/mpi/partition/routing.hpp"
 #include "engine/mpi/rank_search.hpp"
 #include "engine/threads/team_output.hpp"
@@ -64,10 +65,9 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
     comm_.add_up(std::span(entries));
     const bool inner = check_entries(octree, entries);
 
-    OctantOwners owners;
+    const OctantOwners owners = owners_of_entries(rank_call, planning, exchange.entries(), entries);
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.pack);
-        owners = planning.owners(entries);
         exchange.pack(executor, owners);
     });
     exchange.exchange();
@@ -77,8 +77,12 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
         received.exchange(joint, octree, own, owners);
     }
     RankShare share;
-    share.begin = owners.begin(comm_.rank());
-    share.end = owners.end(comm_.rank());
+    if (owners.in_runs()) {
+        share.begin = owners.begin(comm_.rank());
+        share.end = owners.end(comm_.rank());
+    } else {
+        share.end = OctantIndex(octree.octants().size());  // the octants of other ranks have no entries here
+    }
     WantedObjects wanted;
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.pack);
@@ -96,6 +100,36 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
     costs_.octants = octree.octants().size();
     costs_.objects_received = octree.entry_count(share.begin, share.end);
     return share;
+}
+
+/// Collective. Returns the owners of octants. `own`, `entries`: number of entries of each octant, of this rank and of all ranks.
+// NOLINTNEXTLINE(readability-function-size): call, plan, and the two numbers of each octant.
+OctantOwners RankSearch::owners_of_entries(RankCall& rank_call, const OctreePlanning& planning,
+                                           std::span<const std::uint32_t> own, std::span<const std::uint32_t> entries) {
+    std::vector<std::uint64_t> work;
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.pack);
+        work = planning.work(entries);
+    });
+    // Octal pairs are in the order of octants, so each rank must own one run. An entry that is handed down crosses runs.
+    const bool any_order = rank_call.output.list == nullptr || rank_call.request.options.order == Order::ascending;
+    const auto is_empty_or_leaf = [&](OctantIndex octant) {
+        return entries[octant] == 0 || passes_.octree().octants()[octant].leaf();
+    };
+    bool only_leaves = true;
+    for (OctantIndex octant = 0; octant < entries.size(); ++octant) only_leaves &= is_empty_or_leaf(octant);
+    std::optional<OctantOwners> regional;
+    if (any_order && only_leaves) {
+        const CostMeter meter(comm_, costs_.pack);
+        regional = regional_owners(comm_, {own, work});
+    }
+    if (regional) return *std::move(regional);
+    OctantOwners owners;
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.pack);
+        owners = {work, comm_.size()};
+    });
+    return owners;
 }
 
 /// Returns whether inner octants have entries. `entries`: number of entries of each octant, of all ranks.

@@ -129,6 +129,8 @@ private:
     void plan(RankCall& rank_call, const BoxSource& own, std::optional<OctreePlanning>& planning);
     bool can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) const;
     RankShare exchange_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
+    OctantOwners owners_of_entries(RankCall& rank_call, const OctreePlanning& planning,
+                                   std::span<const std::uint32_t> own, std::span<const std::uint32_t> entries);
     bool check_entries(const LinearOctree& octree, std::span<const std::uint32_t> entries);
     RankShare exchange_boxes(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
     void exchange_objects(RankCall& rank_call, Executor& executor, const Routing& routing);

@@ -71,8 +71,7 @@ void scan(const OctreeRange& octants, const ScanContext& context, Executor& exec
         const ScanMemoryPool::Lent memory = context.memory.lend();
         OctantScan scans(octree, context, *memory, within);
         for (OctantIndex octant = share.begin; octant < share.end; ++octant) {
-            const std::span<const Entry> above = handed.at(octant);
-            if (octree.entry_count(octant) > 0) scans.scan(octant, above);
+            if (octree.entry_count(octant) > 0) scans.scan(octant, handed.at(octant));
         }
         throw_if_stopped(context.stop);
         if (progress) progress(octree.entry_count(share.begin, share.end));

@@ -117,13 +117,13 @@ void Communicator::gather_parts(const Values& own, std::span<const std::size_t> 
 }
 
 template <typename T>
-void Communicator::add_up_values(std::span<T> values, MPI_Datatype type) {
+void Communicator::reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation) {
     const MpiTimer counted(traffic_);
     for (std::span<T> left = values; !left.empty();) {
         const auto some = left.first(std::min(left.size(), std::max<std::size_t>(1, message_bytes_ / sizeof(T))));
         taped(std::as_writable_bytes(some), [&] {
             MPI_Request request = MPI_REQUEST_NULL;
-            check(MPI_Iallreduce(MPI_IN_PLACE, some.data(), int(some.size()), type, MPI_SUM, comm_, &request));
+            check(MPI_Iallreduce(MPI_IN_PLACE, some.data(), int(some.size()), type, operation, comm_, &request));
             wait({&request, 1});
         });
         count(2 * some.size_bytes() * (size_ - 1) / size_, 2 * std::bit_width(size_ - 1));
@@ -131,8 +131,8 @@ void Communicator::add_up_values(std::span<T> values, MPI_Datatype type) {
     }
 }
 
-template void Communicator::add_up_values(std::span<std::uint32_t> values, MPI_Datatype type);
-template void Communicator::add_up_values(std::span<std::uint64_t> values, MPI_Datatype type);
+template void Communicator::reduce(std::span<std::uint32_t> values, MPI_Datatype type, MPI_Op operation);
+template void Communicator::reduce(std::span<std::uint64_t> values, MPI_Datatype type, MPI_Op operation);
 
 void Communicator::broadcast_bytes(std::span<std::byte> bytes, unsigned from) {
     const MpiTimer counted(traffic_);

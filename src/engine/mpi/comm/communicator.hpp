@@ -98,8 +98,10 @@ public:
         return all;
     }
     /// Replaces each value by its sum over all ranks. Requires: the same number of values on all ranks.
-    void add_up(std::span<std::uint64_t> values) { add_up_values(values, MPI_UINT64_T); }
-    void add_up(std::span<std::uint32_t> values) { add_up_values(values, MPI_UINT32_T); }
+    void add_up(std::span<std::uint64_t> values) { reduce(values, MPI_UINT64_T, MPI_SUM); }
+    void add_up(std::span<std::uint32_t> values) { reduce(values, MPI_UINT32_T, MPI_SUM); }
+    /// Replaces each value by its maximum over all ranks. Requires: the same number of values on all ranks.
+    void take_largest(std::span<std::uint64_t> values) { reduce(values, MPI_UINT64_T, MPI_MAX); }
     std::uint64_t sum(std::uint64_t value) {
         add_up({&value, 1});
         return value;
@@ -142,7 +144,7 @@ private:
     void gather_equal(std::span<const std::byte> own, std::span<std::byte> all);
     void gather_parts(const Values& own, std::span<const std::size_t> begins, void* all);
     template <typename T>
-    void add_up_values(std::span<T> values, MPI_Datatype type);
+    void reduce(std::span<T> values, MPI_Datatype type, MPI_Op operation);
     void broadcast_bytes(std::span<std::byte> bytes, unsigned from);
     void exchange_parts(const Values& out, void* in, const Exchange& counts);
     void send_parts(const Values& out, void* in, const Exchange& counts);

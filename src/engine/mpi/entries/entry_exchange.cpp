@@ -42,14 +42,13 @@ void EntryExchange::pack(Executor& executor, const OctantOwners& owners) {
     count_begins_.assign(1, 0);
     sent_.assign(owners.ranks(), 0);
     for (unsigned rank = 0; rank < owners.ranks(); ++rank) {
-        const OctantIndex begin = owners.begin(rank), end = owners.end(rank);
-        for (OctantIndex octant = begin; is_packed(rank) && octant < end; ++octant)
+        const auto octants = is_packed(rank) ? owners.octants_of(rank) : std::span<const OctantIndex>();
+        for (const OctantIndex octant : octants)
             sent_[rank] += octree_.octants()[octant].leaf() ? octree_.entry_count(octant) : 0;
         places.push_back(places.back() + std::size_t(sent_[rank]));
-        count_begins_.push_back(count_begins_.back() + (is_packed(rank) ? sets_ * lists * (end - begin) : 0));
+        count_begins_.push_back(count_begins_.back() + sets_ * lists * octants.size());
     }
-    const unsigned own = comm_.rank();
-    received_counts_.resize(owners.ranks() * sets_ * lists * (owners.end(own) - owners.begin(own)));
+    received_counts_.resize(owners.ranks() * sets_ * lists * owners.octants_of(comm_.rank()).size());
     sent_counts_.resize(count_begins_.back());
     memory_.sent.resize_discard(places.back());
     executor.for_each(owners.ranks(), [&](std::size_t rank) {
@@ -61,7 +60,7 @@ void EntryExchange::pack(Executor& executor, const OctantOwners& owners) {
 void EntryExchange::pack(unsigned rank, CellEntry* out) {
     Count* counts = sent_counts_.data() + count_begins_[rank];
     for (unsigned set = 0; set < sets_; ++set) {
-        for (OctantIndex octant = owners_->begin(rank); octant < owners_->end(rank); ++octant) {
+        for (const OctantIndex octant : owners_->octants_of(rank)) {
             for (const OctantList list : octant_lists) {
                 const CellEntry* const begin = out;
                 const auto copy = [&](std::span<const CellEntry> run) { out = std::copy(run.begin(), run.end(), out); };
@@ -76,8 +75,7 @@ void EntryExchange::pack(unsigned rank, CellEntry* out) {
 }
 
 void EntryExchange::exchange() {
-    const unsigned own = comm_.rank();
-    const std::size_t own_counts = sets_ * lists * std::size_t(owners_->end(own) - owners_->begin(own));
+    const std::size_t own_counts = sets_ * lists * owners_->octants_of(comm_.rank()).size();
     Exchange counts{RankCounts(comm_.size()), RankCounts(comm_.size())};
     for (unsigned rank = 0; rank < comm_.size(); ++rank) {
         counts.sent[rank] = count_begins_[rank + 1] - count_begins_[rank];
@@ -95,8 +93,7 @@ void EntryExchange::exchange() {
 
 void EntryExchange::arrange(const InnerEntries& inner) {
     const unsigned ranks = comm_.size(), own = comm_.rank();
-    const OctantIndex begin = owners_->begin(own), end = owners_->end(own);
-    const std::size_t set_counts = std::size_t(end - begin) * lists;
+    const std::size_t set_counts = owners_->octants_of(own).size() * lists;
     /// The entries of one set from one rank that are not yet arranged, and their counts.
     struct Message {
         const CellEntry* entries;
@@ -124,7 +121,7 @@ void EntryExchange::arrange(const InnerEntries& inner) {
         runs.begins.push_back(runs.runs.size());
         const bool leaf = octree_.octants()[octant].leaf();
         if (!leaf) add(inner.of(octant));
-        if (octant < begin || octant >= end) continue;
+        if (owners_->owner(octant) != own) continue;
         for (const OctantList list : octant_lists) {
             for (Message& message : messages) {
                 if (message.packed) {

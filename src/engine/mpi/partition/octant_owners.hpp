@@ -2,7 +2,7 @@
 //
 // Such an octant may be divided further in the whole octree. Then its owner owns all of its descendants.
 //
-// Invariants 1. Each rank owns one run of the pre-order of the octree. A run may be empty.
+// Invariants 1. Each rank owns one run of the pre-order of the octree (a run may be empty), unless the owners are given one by one.
 //            2. An object, or an entry of it, belongs to each rank that owns an octant with an entry of the object.
 //            3. If an entry is kept in an inner octant, it also belongs to each rank that owns a descendant that the box touches.
 //               So a rank has all entries that are handed down to its octants.
@@ -25,10 +25,20 @@ public:
     /// only on the arguments. `work`: estimated work in each octant that all ranks store.
     OctantOwners(std::span<const std::uint64_t> work, unsigned ranks);
 
+    /// `owners`: rank that owns each octant.
+    OctantOwners(std::vector<std::uint32_t> owners, unsigned ranks);
+
     unsigned ranks() const { return unsigned(begins_.size() - 1); }
+    unsigned owner(OctantIndex octant) const { return owners_[octant]; }
+    /// Returns the octants that a rank owns, ascending.
+    std::span<const OctantIndex> octants_of(unsigned rank) const {
+        return std::span(octants_).subspan(begins_[rank], begins_[rank + 1] - begins_[rank]);
+    }
+    /// Returns the begin and the end of a rank's run. Requires: each rank owns one run.
     OctantIndex begin(unsigned rank) const { return OctantIndex(begins_[rank]); }
     OctantIndex end(unsigned rank) const { return OctantIndex(begins_[rank + 1]); }
-    unsigned owner(OctantIndex octant) const { return owners_[octant]; }
+    /// True if each rank owns one run, and these runs are in the order of ranks.
+    bool in_runs() const { return std::ranges::is_sorted(owners_); }
 
     /// Range of the pre-order, from `first` to `last`, that has all octants that a box belongs to.
     struct Reach {
@@ -67,8 +77,9 @@ public:
     }
 
 private:
-    std::vector<std::size_t> begins_;
-    std::vector<std::uint32_t> owners_;
+    std::vector<std::size_t> begins_;      // by rank: place in octants_ of the first octant that it owns; then the number of octants
+    std::vector<std::uint32_t> owners_;    // by octant
+    std::vector<OctantIndex> octants_;     // by owner, then ascending
 };
 
 }  // namespace octopair

@@ -315,11 +315,14 @@ unsigned OctreePlanning::first_fine_level(const Space& space, bool exact) {
     return unsigned(std::max(0.0, level)) + 1;
 }
 
-OctantOwners OctreePlanning::owners(std::span<const std::uint32_t> entries) const {
-    if (!whole_) return growers_;
+std::vector<std::uint64_t> OctreePlanning::work(std::span<const std::uint32_t> entries) const {
     std::vector<std::uint64_t> work(entries.size());
     for (std::size_t i = 0; i < work.size(); ++i) work[i] = estimates_[i].work(double(entries[i]));
-    return {work, comm_.size()};
+    return work;
+}
+
+OctantOwners OctreePlanning::owners(std::span<const std::uint32_t> entries) const {
+    return whole_ ? OctantOwners(work(entries), comm_.size()) : growers_;
 }
 
 OctreePlanning::OwnLayout OctreePlanning::take_own(const OctantOwners& owners) {

@@ -58,7 +58,9 @@ public:
     /// Returns the same. Afterwards, shared() is empty.
     OctreeLayout take_shared() { return std::move(shared_); }
 
-    /// Divides the octants that all ranks store among the ranks. `entries`: number of entries of each octant, summed over all ranks, in any
+    /// Returns the estimated work in each octant that all ranks store.
+    std::vector<std::uint64_t> work(std::span<const std::uint32_t> entries) const;
+    /// Divides the octants that all ranks store among the ranks, one run for each. `entries`: number of entries of each octant, summed over all ranks, in any
     /// unit. An octree that is not whole is divided without these numbers.
     OctantOwners owners(std::span<const std::uint32_t> entries) const;
 
