@@ -74,17 +74,17 @@ Summary find_pairs64(Engine& engine, const IndexedInput& input, std::vector<Pair
 struct RankCosts {
     double join = 0;   ///< exchanges the requests of all ranks
     double plan = 0;   ///< plans the octants
-    double route = 0;  ///< finds the ranks that receive each object
-    double pack = 0;   ///< packs the objects to send, and decodes the positions of received objects
-    double build = 0;  ///< builds the octree of the received objects
+    double route = 0;  ///< finds the ranks that receive each object, if boxes are sent
+    double pack = 0;   ///< packs what is sent, and arranges what is received
+    double build = 0;  ///< encodes this rank's objects; if boxes are sent, the received objects
     double scan = 0;   ///< finds the pairs
     double order = 0;  ///< sorts the pairs into ascending order
     double mpi = 0;    ///< CPU time inside of MPI calls, including time that MPI spends polling
     std::uint64_t bytes_sent = 0, messages_sent = 0;
     std::uint64_t objects = 0;         ///< number of objects in this rank's slices
-    std::uint64_t shared_objects = 0;  ///< number of objects in this rank's slices that were sent to several ranks
-    std::uint64_t objects_received = 0;
-    std::uint64_t octants = 0;  ///< number of octants that this rank stores: the top of the octree, and its own
+    std::uint64_t shared_objects = 0;    ///< number of objects in this rank's slices whose boxes were sent to several ranks
+    std::uint64_t objects_received = 0;  ///< number of objects whose boxes were sent to this rank, or of entries in its octants
+    std::uint64_t octants = 0;           ///< number of octants that this rank stores
 };
 /// Returns the costs of the last call. Throws: Error{usage} if `engine` is not an MPI engine.
 RankCosts last_costs(const Engine& engine);

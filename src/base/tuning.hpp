@@ -153,7 +153,8 @@ struct Tuning {
         std::size_t block = 1 << 15;           ///< objects per share; at most 2^15: near positions rely on it
         std::size_t share_pairs = 1 << 16;     ///< pairs per share of the sort
         std::uint64_t octants = 1;      ///< minimum number of octants distributed to each rank, if they can be divided
-        std::uint64_t objects_per_octant = 3;  ///< objects of a rank for each octant of an octree that all ranks store
+        /// Minimum number of objects on a rank for each octant of an octree that all ranks store. May be 0.
+        std::uint64_t objects_per_octant = 3;
         std::size_t key_samples = 64;   ///< sampled keys per rank
         std::size_t relayed = 1 << 20;  ///< pairs per message
         unsigned row_bin_bits = 14;     ///< log2 of the maximum number of bins of objects by which pairs are counted

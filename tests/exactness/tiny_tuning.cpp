@@ -123,8 +123,7 @@ void shrink(Tuning::Processes& processes, Shrinker& to) {
 void shrink(Tuning::Ranks& ranks, Shrinker& to) {
     to.one_of<std::uint64_t>(ranks.round_bytes, {48, 500});
     to.one_of<std::size_t>(ranks.batch, {1, 5});
-    std::size_t unused = 0;  // drawn so that the seeds of earlier findings keep the other values
-    to.one_of<std::size_t>(unused, {1, 10});
+    to.one_of<std::uint64_t>(ranks.objects_per_octant, {0, 1000});
     to.one_of<std::size_t>(ranks.block, {1, 10});
     to.one_of<std::size_t>(ranks.share_pairs, {1, 10});
     to.one_of<std::uint64_t>(ranks.octants, {1, 4, 20});
