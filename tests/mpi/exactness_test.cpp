@@ -136,6 +136,7 @@ void expect_found(Fault fault) {
 }
 
 TEST(MpiSmallScenesLed, FindsARankThatTakesItsNeighboursOctant) { expect_found(Fault::rank_takes_neighbour); }
+TEST(MpiSmallScenesLed, FindsPairsThatAreNotSettled) { expect_found(Fault::postponed_pairs_kept); }
 TEST(MpiSmallScenesLed, FindsPositionsThatAreSentInTooFewBits) { expect_found(Fault::positions_always_near); }
 
 #endif

@@ -121,7 +121,7 @@ OctantOwners RankSearch::owners_of_entries(RankCall& rank_call, const OctreePlan
     std::optional<OctantOwners> regional;
     if (any_order && only_leaves) {
         const CostMeter meter(comm_, costs_.pack);
-        regional = regional_owners(comm_, {own, work});
+        regional = regional_owners(comm_, {own, entries, work});
     }
     if (regional) return *std::move(regional);
     OctantOwners owners;

@@ -33,14 +33,16 @@ void balance(std::vector<std::uint32_t>& owners, std::span<const std::uint64_t> 
 }  // namespace
 
 std::optional<OctantOwners> regional_owners(Communicator& comm, const OctantLoads& loads) {
-    // If objects are near each other, few ranks have entries in an octant. Otherwise almost all ranks have some.
+    // If objects are near each other, few ranks have much of an octant. Otherwise all ranks have about an equal part.
     constexpr std::uint64_t part_of_ranks = 4;
     const unsigned ranks = comm.size();
-    const auto has_entries = [](std::uint32_t entries) { return entries > 0; };
-    const auto filled = std::uint64_t(std::ranges::count_if(loads.own, has_entries));
-    const auto not_empty = std::uint64_t(std::ranges::count_if(loads.work, [](std::uint64_t work) { return work > 0; }));
-    const std::uint64_t most = not_empty + not_empty * (ranks - 1) / part_of_ranks;
-    if (comm.sum(filled) > most) return {};
+    std::uint64_t not_empty = 0, much = 0;  // octants with entries, and those of which this rank has at least half an equal part
+    for (std::size_t octant = 0; octant < loads.all.size(); ++octant) {
+        const std::uint64_t own = loads.own[octant], all = loads.all[octant];
+        not_empty += all > 0 ? 1 : 0;
+        much += all > 0 && own * 2 * ranks >= all ? 1 : 0;
+    }
+    if (comm.sum(much) > not_empty + not_empty * (ranks - 1) / part_of_ranks) return {};
     count_path(Path::ranks_regional);
     // The rank with most entries of an octant, and among equals the first one.
     std::vector<std::uint64_t> largest;

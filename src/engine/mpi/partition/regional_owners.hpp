@@ -13,8 +13,8 @@ namespace octopair {
 
 /// Estimated work and numbers of entries, by octant.
 struct OctantLoads {
-    std::span<const std::uint32_t> own;   ///< entries of this rank
-    std::span<const std::uint64_t> work;  ///< work on the entries of all ranks
+    std::span<const std::uint32_t> own, all;  ///< entries of this rank and of all ranks
+    std::span<const std::uint64_t> work;      ///< work on the entries of all ranks
 };
 
 /// Collective. Returns none if the objects of a rank are not near each other. The result is the same on all ranks, and depends only on the
