@@ -114,6 +114,7 @@ PUBLIC = {
     "cli/ranks": ["boxes"],
     "bench/baselines": ["boxes"],
     "bench/paper": ["engine"],
+    "bench/cluster": ["boxes", "octree/plan"],
     "bench/scaling": ["engine/mpi"],
 }
 

@@ -16,7 +16,7 @@ namespace octopair::cluster {
 /// How ranks divide the work.
 enum class Arrangement : std::uint8_t {
     shared,  ///< octopair's: each rank has an equal part of the objects, and the ranks share every step
-    space,   ///< the same, but the objects of a rank are near each other: they are sorted along a curve through space
+    space,   ///< the same, but all objects are sorted along a curve through space. Pairs are counted, not listed
     blocks,  ///< the same, but each rank has the objects of a block of space. Pairs are counted, not listed
     paper,   ///< the paper's: rank 0 has all objects at first, and merges and scans alone (paper_master.hpp)
 };
@@ -89,7 +89,7 @@ std::vector<Measured> measured_of(const std::string& json);
 
 /// Collective. Measures `rounds` calls of all ranks together, then at least as many calls of each rank alone. Warm-up
 /// calls are not counted. Each rank makes its slice of the scene. Rank 0 returns the costs of all ranks. Pairs are
-/// listed in octal order, by ranks with one thread.
+/// listed in octal order (or counted, see Arrangement), by ranks with one thread.
 Measured measure_on_ranks(MPI_Comm comm, const Setup& setup, unsigned rounds, const std::stop_token& stop);
 
 }  // namespace octopair::cluster

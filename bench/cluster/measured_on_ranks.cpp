@@ -133,7 +133,7 @@ public:
         } else {
             if (setup.arrangement == Arrangement::space) own_ = in_order_of_space(comm, std::move(own_));
             if (setup.arrangement == Arrangement::blocks) own_ = in_blocks(comm, std::move(own_));
-            calls_ = std::make_unique<SharedCalls>(comm, own_, setup.arrangement != Arrangement::blocks, stop);
+            calls_ = std::make_unique<SharedCalls>(comm, own_, setup.arrangement == Arrangement::shared, stop);
         }
         measured_.setup = setup;
         measured_.setup.ranks = unsigned(ranks_);

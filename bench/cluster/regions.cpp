@@ -41,15 +41,30 @@ std::array<float, 3> middle(const Box3f& box) {
     return at;
 }
 
-/// Returns the key of a box's octal code. The octants of a scene in a cube are four times as long on the x axis.
+/// Returns the key of the octal code of a box's middle, in an octree of cubes.
 std::uint64_t key(const Box3f& box) {
     std::array<std::uint32_t, 3> cell;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        constexpr auto all_cells = float(1u << OctalCode::max_level);
-        const float cells = axis == 0 ? all_cells / 4 : all_cells;
+        constexpr auto cells = float(1u << OctalCode::max_level);
         cell[axis] = std::uint32_t(std::clamp(middle(box)[axis] * cells, 0.0f, cells - 1));
     }
     return OctalCode::from_cell(cell, OctalCode::max_level).key();
+}
+
+struct Keyed {
+    std::uint64_t key;
+    Box3f box;
+};
+
+/// Sorts boxes by their keys. Returns the keys.
+std::vector<std::uint64_t> sort_by_key(std::vector<Box3f>& boxes) {
+    std::vector<Keyed> keyed;
+    for (const Box3f& box : boxes) keyed.push_back({key(box), box});
+    std::ranges::sort(keyed, {}, &Keyed::key);
+    std::ranges::transform(keyed, boxes.begin(), &Keyed::box);
+    std::vector<std::uint64_t> keys(keyed.size());
+    std::ranges::transform(keyed, keys.begin(), &Keyed::key);
+    return keys;
 }
 
 }  // namespace
@@ -57,20 +72,20 @@ std::uint64_t key(const Box3f& box) {
 std::vector<Box3f> in_order_of_space(MPI_Comm comm, std::vector<Box3f> own) {
     int ranks = 0;
     MPI_Comm_size(comm, &ranks);
-    std::ranges::sort(own, {}, key);
+    const std::vector<std::uint64_t> keys = sort_by_key(own);
     // Each rank offers equally many keys. Their quantiles divide the curve.
     constexpr int samples = 1024;
     std::vector<std::uint64_t> offered(samples, 0), all(std::size_t(samples) * std::size_t(ranks));
-    for (std::size_t i = 0; i < offered.size() && !own.empty(); ++i) offered[i] = key(own[i * own.size() / samples]);
+    for (std::size_t i = 0; i < offered.size() && !own.empty(); ++i) offered[i] = keys[i * own.size() / samples];
     MPI_Allgather(offered.data(), samples, MPI_UINT64_T, all.data(), samples, MPI_UINT64_T, comm);
     std::ranges::sort(all);
     std::vector<int> to_rank;
-    for (const Box3f& box : own) {
-        const auto before = std::size_t(std::ranges::upper_bound(all, key(box)) - all.begin());
+    for (const std::uint64_t own_key : keys) {
+        const auto before = std::size_t(std::ranges::upper_bound(all, own_key) - all.begin());
         to_rank.push_back(int(std::min(before / samples, std::size_t(ranks) - 1)));
     }
     own = distributed(comm, own, to_rank);
-    std::ranges::sort(own, {}, key);
+    (void)sort_by_key(own);
     return own;
 }
 

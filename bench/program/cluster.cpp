@@ -63,7 +63,8 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
                     request->plan.arrangements.push_back(cluster::arrangement_of(name));
                 }
             },
-            "shared (default): ranks share all steps; space, blocks: the same, with objects that are already near each other; paper: "
+            "shared (default): ranks share all steps; space, blocks: the same, with objects that are already near each "
+            "other; paper: "
             "rank 0 distributes, merges and scans; or several of them")
         .type_name("WORD");
     command

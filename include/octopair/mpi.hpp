@@ -81,10 +81,12 @@ struct RankCosts {
     double order = 0;  ///< sorts the pairs into ascending order
     double mpi = 0;    ///< CPU time inside of MPI calls, including time that MPI spends polling
     std::uint64_t bytes_sent = 0, messages_sent = 0;
-    std::uint64_t objects = 0;         ///< number of objects in this rank's slices
-    std::uint64_t shared_objects = 0;    ///< number of objects in this rank's slices whose boxes were sent to several ranks
-    std::uint64_t objects_received = 0;  ///< number of objects whose boxes were sent to this rank, or of entries in its octants
-    std::uint64_t octants = 0;           ///< number of octants that this rank stores
+    std::uint64_t objects = 0;  ///< number of objects in this rank's slices
+    std::uint64_t shared_objects =
+        0;  ///< number of objects in this rank's slices whose boxes were sent to several ranks
+    std::uint64_t objects_received =
+        0;                      ///< number of objects whose boxes were sent to this rank, or of entries in its octants
+    std::uint64_t octants = 0;  ///< number of octants that this rank stores
 };
 /// Returns the costs of the last call. Throws: Error{usage} if `engine` is not an MPI engine.
 RankCosts last_costs(const Engine& engine);

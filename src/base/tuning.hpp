@@ -152,7 +152,7 @@ struct Tuning {
         std::size_t batch = 256;               ///< objects routed at a time
         std::size_t block = 1 << 15;           ///< objects per share; at most 2^15: near positions rely on it
         std::size_t share_pairs = 1 << 16;     ///< pairs per share of the sort
-        std::uint64_t octants = 1;      ///< minimum number of octants distributed to each rank, if they can be divided
+        std::uint64_t octants = 8;  ///< minimum number of octants for each rank, if not all ranks store the octree
         /// Minimum number of objects on a rank for each octant of an octree that all ranks store. May be 0.
         std::uint64_t objects_per_octant = 3;
         std::size_t key_samples = 64;   ///< sampled keys per rank

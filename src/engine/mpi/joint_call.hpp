@@ -29,8 +29,8 @@ struct JointCall {
     std::array<std::uint64_t, 2> begins = {0, 0};  ///< begin of this rank's slice in each set
     /// Begin of each rank's slice in each set, and behind them the total.
     std::array<std::vector<std::uint64_t>, 2> starts;
-    std::array<std::uint64_t, 2> sizes = {0, 0};   ///< number of objects of this rank's slice of each set
-    std::array<bool, 2> wide = {}, padded = {};    ///< `wide`: boxes are float64; `padded`: objects have paddings
+    std::array<std::uint64_t, 2> sizes = {0, 0};  ///< number of objects of this rank's slice of each set
+    std::array<bool, 2> wide = {}, padded = {};   ///< `wide`: boxes are float64; `padded`: objects have paddings
     EntryForm form;
     /// 64-bit indices of this rank's objects, by set; empty unless `indexed`. Borrowed.
     std::array<std::span<const std::uint64_t>, 2> indices = {};

@@ -52,8 +52,8 @@ private:
 
 /// Part of a call that one rank runs.
 struct RankShare {
-    std::optional<OctreeLayout> layout;  ///< octants of the octree to build; none if the octree is built
-    OctantIndex begin = 0, end = 0;      ///< range of the octants that this rank owns
+    std::optional<OctreeLayout> layout;   ///< octants of the octree to build; none if the octree is built
+    OctantIndex begin = 0, end = 0;       ///< range of the octants that this rank owns
     const EntrySource* source = nullptr;  ///< source of the octree; if null, the objects of the call
     ObjectPositions positions = {};
 };

@@ -77,9 +77,8 @@ void InnerEntries::exchange(const JointCall& call, const LinearOctree& octree, c
 
 /// Sorts entries by octant. In an octant, entries ascend by set and position.
 void InnerEntries::sort(std::vector<InnerEntry> received) {
-    std::ranges::stable_sort(received, {}, [](const InnerEntry& entry) {
-        return std::pair(entry.octant, set_of(entry.ends));
-    });
+    std::ranges::stable_sort(received, {},
+                             [](const InnerEntry& entry) { return std::pair(entry.octant, set_of(entry.ends)); });
     for (const InnerEntry& entry : received) {
         octants_.push_back(entry.octant);
         entries_.push_back({entry.ends, entry.object});

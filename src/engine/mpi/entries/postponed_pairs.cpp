@@ -80,7 +80,8 @@ void remove_pairs(detail::PairStorage& list, std::vector<Pair> removed) {
             if (marks == 0) {
                 out = out == some.data() ? out + some.size() : std::copy(some.begin(), some.end(), out);
             } else {
-                out = std::remove_copy_if(some.begin(), some.end(), out, [&](const Pair& pair) { return filter.has(pair); });
+                out = std::remove_copy_if(some.begin(), some.end(), out,
+                                          [&](const Pair& pair) { return filter.has(pair); });
             }
         }
         return std::size_t(out - pairs.data());

@@ -77,9 +77,10 @@ public:
     }
 
 private:
-    std::vector<std::size_t> begins_;      // by rank: place in octants_ of the first octant that it owns; then the number of octants
-    std::vector<std::uint32_t> owners_;    // by octant
-    std::vector<OctantIndex> octants_;     // by owner, then ascending
+    std::vector<std::size_t>
+        begins_;  // by rank: place in octants_ of the first octant that it owns; then the number of octants
+    std::vector<std::uint32_t> owners_;  // by octant
+    std::vector<OctantIndex> octants_;   // by owner, then ascending
 };
 
 }  // namespace octopair

@@ -147,7 +147,9 @@ OctreePlanning::OctreePlanning(Communicator& comm, const JointCall& call, const 
     space_ = fit_together(comm, sample.for_space, call.objects());
     std::vector<CellBox> cells(sample.boxes.size());
     agreement.together([&] { space_.cells(sample.boxes, cells); });
-    const std::uint64_t most = octant_sample(call.objects()).size() / (tuning().ranks.octants * comm.size());
+    // If all ranks will store the octree, its octants are distributed later. Then a rank needs no more than one octant to grow.
+    const std::uint64_t octants = is_shared(estimated_octants()) ? 1 : tuning().ranks.octants;
+    const std::uint64_t most = octant_sample(call.objects()).size() / (octants * comm.size());
     const SharedTop top(comm, growth_, most, cells);
     estimate(top);
     std::vector<std::uint64_t> work;
@@ -160,6 +162,16 @@ OctreePlanning::OctreePlanning(Communicator& comm, const JointCall& call, const 
     Grown grown;
     agreement.together([&] { grown = grow(top, boxes); });
     share(top, std::move(grown));
+}
+
+/// True if all ranks store an octree of this many octants.
+bool OctreePlanning::is_shared(std::uint64_t octants) const {
+    return octants * tuning().ranks.objects_per_octant * comm_.size() <= objects_;
+}
+
+/// Returns the number of octants of an octree if the objects are distributed evenly over space: octants are half full.
+std::uint64_t OctreePlanning::estimated_octants() const {
+    return std::uint64_t(2 * double(objects_) / tuning().split.always_above);
 }
 
 /// Sets the estimates of the octants of the shared top.
@@ -205,8 +217,7 @@ OctreePlanning::Crowd OctreePlanning::crowd_of(const SampledOctant& leaf, std::s
     const double tested = double(chosen.size()) * double(chosen.size() - 1) / 2;
     // A sweep tests boxes that overlap on its axis, each pair once.
     const double shortest = double(*std::ranges::min_element(overlaps_on)) / tested / 2;
-    constexpr double crowd_cost = 3;  // cost of a test in float32, in tests of a sweep on cells; measured
-    return {OctantIndex(place), float(shortest * crowd_cost), float(double(overlaps) / tested)};
+    return {OctantIndex(place), float(shortest), float(double(overlaps) / tested)};
 }
 
 /// Grows the octants of this rank's part of the shared top.
@@ -252,7 +263,7 @@ void OctreePlanning::share(const SharedTop& top, Grown grown) {
             needs_coordinates_ |= parts[rank].needs_coordinates != 0;
         }
     });
-    whole_ = octants * tuning().ranks.objects_per_octant * comm_.size() <= objects_;
+    whole_ = is_shared(octants);
     count_path(whole_ ? Path::ranks_whole_octree : Path::ranks_part_of_octree);
     if (whole_) {
         const SplitFlags shape = comm_.all_gather(std::span<const std::uint8_t>(grown.shape)).values;

@@ -87,6 +87,8 @@ private:
         std::vector<Crowd> crowds;
         bool needs_coordinates = false;  // an octant is probably too crowded for a sweep on cells
     };
+    bool is_shared(std::uint64_t octants) const;
+    std::uint64_t estimated_octants() const;
     void estimate(const SharedTop& top);
     std::vector<SentBox> exchange_boxes(const SharedTop& top, std::span<const CellBox> cells);
     Grown grow(const SharedTop& top, std::span<const SentBox> boxes) const;

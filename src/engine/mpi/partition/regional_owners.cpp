@@ -36,7 +36,8 @@ std::optional<OctantOwners> regional_owners(Communicator& comm, const OctantLoad
     // If objects are near each other, few ranks have much of an octant. Otherwise all ranks have about an equal part.
     constexpr std::uint64_t part_of_ranks = 4;
     const unsigned ranks = comm.size();
-    std::uint64_t not_empty = 0, much = 0;  // octants with entries, and those of which this rank has at least half an equal part
+    std::uint64_t not_empty = 0,
+                  much = 0;  // octants with entries, and those of which this rank has at least half an equal part
     for (std::size_t octant = 0; octant < loads.all.size(); ++octant) {
         const std::uint64_t own = loads.own[octant], all = loads.all[octant];
         not_empty += all > 0 ? 1 : 0;

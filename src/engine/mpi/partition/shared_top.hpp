@@ -28,8 +28,9 @@ public:
     };
     struct SharedOctant {
         OctantCube octant;
-        bool left;            ///< a leaf of the shared top
-        std::uint32_t boxes;  ///< number of boxes of the sample, of all ranks, that touch the octant and are not handed down below
+        bool left;  ///< a leaf of the shared top
+        std::uint32_t
+            boxes;  ///< number of boxes of the sample, of all ranks, that touch the octant and are not handed down below
         // Means over the sampled boxes that touch the octant.
         double shortest;  ///< extent on the shortest axis, in sides of the octant
         double overlap;   ///< estimated fraction of the octant's boxes that one of its boxes overlaps
