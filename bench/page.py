@@ -351,10 +351,11 @@ def scaling_aims(results):
 
 def cluster(results):
     """Returns a row for each number of ranks in each call."""
-    lines = ["| scene, objects | ranks | slowest, ms | imbalance | efficiency | shared | bytes an object | octants |",
+    lines = ["| scene, objects | ranks | slowest, ms | ns x ranks / object | imbalance | efficiency | bytes an object | octants |",
              "|---|--:|--:|--:|--:|--:|--:|--:|"]
     study = load(results / "cluster.json")
-    runs = study["runs"] + load(results / "cluster_sizes.json")["runs"]
+    runs = study["runs"] + load(results / "cluster_sizes.json")["runs"] + load(results / "cluster_regions.json")["runs"]
+    arrangements = {"shared": "", "space": ", sorted", "blocks": ", in blocks", "paper": ", as in the paper"}
 
     def call(run):
         return run["scene"], run["objects"], run.get("arrangement", "shared")
@@ -362,11 +363,10 @@ def cluster(results):
     one = {call(run): run["slowest_seconds"] for run in runs if run["ranks"] == 1}
     for run in sorted(runs, key=call):
         slowest, ranks = run["slowest_seconds"], run["ranks"]
-        paper = ", as in the paper" if call(run)[2] == "paper" else ""
         efficiency = f"{100 * one[call(run)] / (ranks * slowest):.1f}%" if call(run) in one else "–"
-        cells = [f"{run['scene']}, {run['objects']:,}{paper}", str(ranks), milliseconds(slowest),
-                 f"{slowest * ranks / run['computing_seconds']:.3f}", efficiency,
-                 f"{100 * run['shared_objects'] / run['objects']:.2f}%", f"{run['bytes_sent'] / run['objects']:.1f}",
+        cells = [f"{run['scene']}, {run['objects']:,}{arrangements[call(run)[2]]}", str(ranks), milliseconds(slowest),
+                 f"{slowest * 1e9 * ranks / run['objects']:.1f}", f"{slowest * ranks / run['computing_seconds']:.3f}",
+                 efficiency, f"{run['bytes_sent'] / run['objects']:.1f}",
                  f"{run['most_octants']:,}"]
         lines.append("| " + " | ".join(cells) + " |")
     return measured_on(study["machine"]) + "\n".join(lines)
