@@ -3,20 +3,17 @@
 
     scaling_model.py RESULTS > RESULTS/model.json     prints the tables that bench/page.py writes into docs/scaling.md
 
-Costs of n evenly spread objects on k ranks:
+Costs of n evenly spread objects on k ranks, if entries of octants are sent:
 
-    shared    s = sigma (k / n)^(1/3)               fraction of the objects that several ranks receive: those at the
-                                                    surface of a rank's part of the space
-    received  r = (n / k) (1 + s)                   objects that a rank receives
-    octants   o = min(u k + v n / k, v n)           octants that a rank stores, at most: the top of the octree and its own
-    plan      c r + d o + e k                       seconds; e: work for each other rank
-    compute   r (a + b log2 r) + m k                seconds of all other steps
-    bytes     (26 + f) r (k - 1) / k + g k + h      sent by a rank; f: boxes of the sample
+    octants   o = v n                               octants of the octree, which every rank stores
+    compute   (n / k) (a + b log2(n / k)) + d o + e k       seconds of a rank
+    bytes     (16 w + f) (n / k) (k - 1) / k + g o + h k    sent by a rank; w: entries of an object; f: boxes of the sample
     messages  p (k - 1) + q                         sent by a rank
-    network   messages x latency + bytes / bandwidth      seconds; a model, not measured
+    network   messages x latency + bytes / bandwidth        seconds; a model, not measured
 
-The constants are fitted to the runs on 10 and 40 ranks of some sizes, by least squares of relative errors; u and v are the largest
-numbers of all runs. The other runs check the constants.
+The constants are fitted to the runs on 10 and 40 ranks of some sizes, by least squares of relative errors; v and w
+are means. The other runs check the constants. The model ends where a rank has fewer than three objects for each octant, because
+then ranks send boxes.
 """
 import json
 import math
@@ -27,7 +24,7 @@ import numpy
 
 CHECKED = {1_000_000, 2_000_000}  # numbers of objects of the runs that check the constants
 FITTED_RANKS = {10, 40}  # numbers of ranks of the other runs
-BOX_AND_POSITION = 26  # bytes of an object in a message
+ENTRY = 16  # bytes of an entry in a message
 NETWORKS = {"1 Gbit/s, 50 us": (50e-6, 125e6), "25 Gbit/s, 5 us": (5e-6, 3.125e9), "200 Gbit/s, 2 us": (2e-6, 25e9)}
 
 
@@ -38,26 +35,9 @@ def runs_of(results):
     return [run for run in runs if run["scene"] == "uniform"]
 
 
-def octant_bounds(runs):
-    """Returns u and v. A run whose ranks store the whole octree does not bound u."""
-    whole = {run["objects"]: stored_octants(run) for run in runs if run["ranks"] == 1}
-    shared = [(stored_octants(run) - whole[run["objects"]] / run["ranks"]) / run["ranks"]
-              for run in runs if run["ranks"] > 1 and stored_octants(run) < 0.9 * whole[run["objects"]]]
-    return max(shared), max(octants / objects for objects, octants in whole.items())
-
-
-def mean_seconds(run, steps):
-    """Returns the mean seconds of the ranks in `steps`."""
-    return sum(run["cpu_seconds"][step] for step in sorted(steps)) / run["ranks"]
-
-
-def planning(run):
-    return mean_seconds(run, ["plan"])
-
-
 def computing(run):
-    """Returns the mean seconds of all steps except planning."""
-    return mean_seconds(run, set(run["cpu_seconds"]) - {"plan", "mpi"})
+    """Returns the mean seconds of the ranks."""
+    return sum(seconds for step, seconds in sorted(run["cpu_seconds"].items()) if step != "mpi") / run["ranks"]
 
 
 def stored_octants(run):
@@ -84,46 +64,38 @@ def fit(rows, values):
 class Model:
     """Predictions of the model for a call."""
 
-    def __init__(self, runs, tree):
-        self.tree = tree
-        self.sigma = fit([[(run["ranks"] / run["objects"]) ** (1 / 3)] for run in runs],
-                         [per_rank(run, "shared_objects") * run["ranks"] / run["objects"] for run in runs])[0]
+    def __init__(self, runs, all_runs):
         sizes = [(run["objects"], run["ranks"]) for run in runs]
-        self.plan = fit([[self.received(*size), stored_octants(run), size[1]] for run, size in zip(runs, sizes)],
-                        [planning(run) for run in runs])
-        self.compute = fit([self.compute_row(n, k) for n, k in sizes], [computing(run) for run in runs])
-        self.sent = fit([[self.crossing(n, k), k, 1] for n, k in sizes],
-                        [per_rank(run, "bytes_sent") - BOX_AND_POSITION * self.crossing(*size)
+        by_size = {run["objects"]: stored_octants(run) / run["objects"] for run in all_runs}
+        self.v = sum(by_size.values()) / len(by_size)
+        self.w = sum(run["entries"] / run["objects"] for run in runs) / len(runs)
+        octants = [stored_octants(run) for run in runs]
+        self.compute = fit([self.compute_row(n, k, o) for (n, k), o in zip(sizes, octants)],
+                           [computing(run) for run in runs])
+        self.sent = fit([[self.crossing(n, k), o, k] for (n, k), o in zip(sizes, octants)],
+                        [per_rank(run, "bytes_sent") - ENTRY * self.w * self.crossing(*size)
                          for run, size in zip(runs, sizes)])
         self.told = fit([[k - 1, 1] for _, k in sizes], [per_rank(run, "messages_sent") for run in runs])
 
-    def shared(self, n, k):
-        return min(1.0, self.sigma * (k / n) ** (1 / 3))
-
-    def received(self, n, k):
-        return n / k * (1 + self.shared(n, k))
-
     def crossing(self, n, k):
-        """Returns the number of objects that a rank sends to other ranks."""
-        return self.received(n, k) * (k - 1) / k
+        """Returns the number of objects whose entries a rank sends to other ranks."""
+        return n / k * (k - 1) / k
 
-    def octants(self, n, k):
-        u, v = self.tree
-        return min(u * k + v * n / k, v * n)
+    def octants(self, n):
+        return self.v * n
 
-    def compute_row(self, n, k):
-        received = self.received(n, k)
-        return [received, received * math.log2(received), k]
+    def compute_row(self, n, k, octants):
+        own = n / k
+        return [own, own * math.log2(own), octants, k]
 
     def seconds(self, n, k):
-        """Returns the seconds for received objects, for the tree, and for other ranks."""
-        own, logarithm, ranks = (a * b for a, b in zip(self.compute, self.compute_row(n, k)))
-        c, d, e = self.plan
-        return own + logarithm + c * self.received(n, k), d * self.octants(n, k), ranks + e * k
+        """Returns the seconds for own objects, for the octree, and for other ranks."""
+        own, logarithm, tree, ranks = (a * b for a, b in zip(self.compute, self.compute_row(n, k, self.octants(n))))
+        return own + logarithm, tree, ranks
 
     def bytes(self, n, k):
         f, g, h = self.sent
-        return (BOX_AND_POSITION + f) * self.crossing(n, k) + g * k + h
+        return (ENTRY * self.w + f) * self.crossing(n, k) + g * self.octants(n) + h * k
 
     def messages(self, k):
         return self.told[0] * (k - 1) + self.told[1]
@@ -134,15 +106,12 @@ def table(head, rows):
 
 
 def constants_text(model):
-    a, b, m = model.compute
-    u, v = model.tree
-    c, d, e = model.plan
+    a, b, d, e = model.compute
     f, g, h = model.sent
     p, q = model.told
-    return table(["sigma", "u", "v", "a, ns", "b, ns", "c, ns", "d, ns", "e, us", "m, us", "f", "g", "h", "p", "q"],
-                 [[f"{model.sigma:.2f}", f"{u:.0f}", f"1 / {1 / v:,.0f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}",
-                   f"{c * 1e9:.1f}", f"{d * 1e9:.0f}", f"{e * 1e6:.2f}", f"{m * 1e6:.2f}",
-                   f"{f:.2f}", f"{g:.0f}", f"{h:,.0f}", f"{p:.1f}", f"{q:.0f}"]])
+    return table(["v", "w", "a, ns", "b, ns", "d, ns", "e, us", "f", "g", "h", "p", "q"],
+                 [[f"1 / {1 / model.v:,.0f}", f"{model.w:.2f}", f"{a * 1e9:.1f}", f"{b * 1e9:.2f}", f"{d * 1e9:.0f}",
+                   f"{e * 1e6:.2f}", f"{f:.2f}", f"{g:.1f}", f"{h:,.0f}", f"{p:.1f}", f"{q:.0f}"]])
 
 
 def check_text(model, runs):
@@ -150,36 +119,34 @@ def check_text(model, runs):
     rows = []
     for run in sorted(runs, key=lambda run: (run["objects"], run["ranks"])):
         n, k = run["objects"], run["ranks"]
-        pairs = [((planning(run) + computing(run)) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
-                 (per_rank(run, "shared_objects") * k / n * 100, model.shared(n, k) * 100, "{:.2f}"),
-                 (stored_octants(run), model.octants(n, k), "{:,.0f}"),
+        pairs = [(computing(run) * 1e3, sum(model.seconds(n, k)) * 1e3, "{:.3f}"),
+                 (stored_octants(run), model.octants(n), "{:,.0f}"),
                  (per_rank(run, "bytes_sent") * k / n, model.bytes(n, k) * k / n, "{:.1f}")]
         rows.append([f"{n:,}", str(k)] + [form.format(number) for measured, said, form in pairs for number in
                                           (measured, said)])
-    return table(["objects", "ranks", "mean ms", "model", "shared %", "model", "octants", "at most", "bytes an object",
-                  "model"], rows)
+    return table(["objects", "ranks", "mean ms", "model", "octants", "model", "bytes an object", "model"], rows)
 
 
 def far_text(model):
     """Returns predictions far beyond the measured range."""
     rows = []
-    for n, k in ((10**8, 64), (10**9, 512), (10**9, 4096), (10**10, 1024), (10**10, 4096)):
+    for n, k in ((10**8, 64), (10**9, 64), (10**9, 512), (10**10, 128), (10**10, 512)):
         objects, tree, ranks = model.seconds(n, k)
         networks = [model.messages(k) * latency + model.bytes(n, k) / bandwidth
                     for latency, bandwidth in NETWORKS.values()]
-        rows.append([f"10^{round(math.log10(n))}", f"{k:,}", f"{model.octants(n, k):,.0f}",
+        rows.append([f"10^{round(math.log10(n))}", f"{k:,}", f"{model.octants(n):,.0f}",
                      *(f"{seconds * 1e3:,.1f}" for seconds in (objects, tree, ranks)),
                      f"{100 * objects / (objects + tree + ranks):.0f}%",
                      *(f"{seconds * 1e3:,.0f}" for seconds in networks)])
-    return table(["objects", "ranks", "octants", "ms: own objects", "the tree", "other ranks", "own part", *NETWORKS], rows)
+    return table(["objects", "ranks", "octants", "ms: own objects", "the octree", "other ranks", "own part", *NETWORKS],
+                 rows)
 
 
 def texts(results):
     """Returns the tables of docs/scaling.md."""
-    all_runs = runs_of(results)
-    runs = [run for run in all_runs if run["ranks"] > 1]
+    runs = [run for run in runs_of(results) if run["ranks"] > 1]
     fitted = [run for run in runs if run["objects"] not in CHECKED and run["ranks"] in FITTED_RANKS]
-    model = Model(fitted, octant_bounds(all_runs))
+    model = Model(fitted, runs)
     checked = [run for run in runs if run not in fitted]
     return {"model": constants_text(model), "model_check": check_text(model, checked), "model_far": far_text(model)}
 

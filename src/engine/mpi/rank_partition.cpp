@@ -46,25 +46,14 @@ bool RankSearch::can_send_entries(const RankCall& rank_call, const OctreePlannin
 /// Encodes this rank's objects, and exchanges the entries. Returns this rank's share.
 /// Throws: NeedsBoxes.
 RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning) {
-    const JointCall& joint = rank_call.joint;
+    LinearOctree& octree = passes_.octree();
     TeamExecutor threads(passes_.threads());
     RankExecutor executor(threads, rank_call.stops);
-    LinearOctree& octree = passes_.octree();
-    EntryExchange exchange(comm_, joint, octree, entries_);
-    std::vector<std::uint32_t> entries;  // number of entries of each octant
-    rank_call.agreement.together([&] {
-        const CostMeter meter(comm_, costs_.build);
-        const PositionedObjects objects(own, joint);
-        try {
-            octree.build(planning.take_shared(), objects, executor, rank_call.stop.get_token());
-        } catch (const LinearOctree::Invalid& invalid) {
-            joint.refuse(own, invalid.begin);
-        }
-        entries = exchange.entries();
-    });
+    encode(rank_call, own, planning.take_shared(), executor);
+    EntryExchange exchange(comm_, rank_call.joint, octree, entries_);
+    std::vector<std::uint32_t> entries = exchange.entries();  // number of entries of each octant
     comm_.add_up(std::span(entries));
     const bool inner = check_entries(octree, entries);
-
     const OctantOwners owners = owners_of_entries(rank_call, planning, exchange.entries(), entries);
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.pack);
@@ -74,8 +63,13 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
     InnerEntries& received = rank_call.inner.emplace(comm_);
     if (inner) {
         const CostMeter meter(comm_, costs_.pack);
-        received.exchange(joint, octree, own, owners);
+        received.exchange(rank_call.joint, octree, own, owners);
     }
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.pack);
+        exchange.arrange(received);
+    });
+    count_path(Path::ranks_entries_sent);
     RankShare share;
     if (owners.in_runs()) {
         share.begin = owners.begin(comm_.rank());
@@ -83,23 +77,36 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
     } else {
         share.end = OctantIndex(octree.octants().size());  // the octants of other ranks have no entries here
     }
-    WantedObjects wanted;
-    rank_call.agreement.together([&] {
-        const CostMeter meter(comm_, costs_.pack);
-        exchange.arrange(received);
-        wanted = forecast_boxes(joint, {octree, share.begin, share.end}, received);
-    });
-    if (comm_.sum(wanted[0].size() + wanted[1].size()) > 0) {
-        const CostMeter meter(comm_, costs_.pack);
-        for (unsigned set = 0; set < rank_call.sets(); ++set)
-            rank_call.fetched[set] = fetch_objects(comm_, {joint, set, rank_call.slices[set]}, wanted[set]);
-    }
-    rank_call.known.emplace(joint, rank_call.fetched);
-    count_path(Path::ranks_entries_sent);
+    fetch_boxes(rank_call, {octree, share.begin, share.end});
     share.source = &*rank_call.known;
     costs_.octants = octree.octants().size();
     costs_.objects_received = octree.entry_count(share.begin, share.end);
     return share;
+}
+
+/// Makes the entries of this rank's objects.
+void RankSearch::encode(RankCall& rank_call, const BoxSource& own, OctreeLayout layout, Executor& executor) {
+    rank_call.agreement.together([&] {
+        const CostMeter meter(comm_, costs_.build);
+        const PositionedObjects objects(own, rank_call.joint);
+        try {
+            passes_.octree().build(std::move(layout), objects, executor, rank_call.stop.get_token());
+        } catch (const LinearOctree::Invalid& invalid) {
+            rank_call.joint.refuse(own, invalid.begin);
+        }
+    });
+}
+
+/// Fetches the boxes that a scan of this rank's octants will probably need.
+void RankSearch::fetch_boxes(RankCall& rank_call, const OctreeRange& octants) {
+    WantedObjects wanted;
+    const CostMeter meter(comm_, costs_.pack);
+    rank_call.agreement.together([&] { wanted = forecast_boxes(rank_call.joint, octants, *rank_call.inner); });
+    if (comm_.sum(wanted[0].size() + wanted[1].size()) > 0) {
+        for (unsigned set = 0; set < rank_call.sets(); ++set)
+            rank_call.fetched[set] = fetch_objects(comm_, {rank_call.joint, set, rank_call.slices[set]}, wanted[set]);
+    }
+    rank_call.agreement.together([&] { rank_call.known.emplace(rank_call.joint, rank_call.fetched); });
 }
 
 /// Collective. Returns the owners of octants. `own`, `entries`: number of entries of each octant, of this rank and of all ranks.

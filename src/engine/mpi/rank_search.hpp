@@ -129,6 +129,8 @@ private:
     void plan(RankCall& rank_call, const BoxSource& own, std::optional<OctreePlanning>& planning);
     bool can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) const;
     RankShare exchange_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
+    void encode(RankCall& rank_call, const BoxSource& own, OctreeLayout layout, Executor& executor);
+    void fetch_boxes(RankCall& rank_call, const OctreeRange& octants);
     OctantOwners owners_of_entries(RankCall& rank_call, const OctreePlanning& planning,
                                    std::span<const std::uint32_t> own, std::span<const std::uint32_t> entries);
     bool check_entries(const LinearOctree& octree, std::span<const std::uint32_t> entries);

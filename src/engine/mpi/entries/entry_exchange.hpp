@@ -3,7 +3,7 @@
 //
 //   encode    each rank builds an octree of its own objects, with the octants of the whole octree
 //   pack      copies the entries of leaves to an array, ordered by receiving rank
-//   exchange  sends the entries, and the objects with entries in inner octants                       (inner_entries.hpp)
+//   exchange  sends these entries; those of inner octants are sent separately                        (inner_entries.hpp)
 //   arrange   orders the received entries by octant, as the local engine does
 //
 // Invariants 1. An entry is the one that the local engine makes, bit for bit. Its object is a position among the objects of all ranks.
@@ -13,7 +13,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -66,7 +65,6 @@ public:
     void exchange();
     /// Replaces the entries of the octree by those of the octants that this rank owns. `inner`: the received entries of inner octants.
     void arrange(const InnerEntries& inner);
-    std::uint64_t received() const { return memory_.received.size(); }
 
 private:
     /// Entries of one list of an octant, of one set, on one rank. At most tuning().scan.max_swept_list, else they are a crowd.
