@@ -85,7 +85,7 @@ struct RankCosts {
     std::uint64_t shared_objects =
         0;  ///< number of objects in this rank's slices whose boxes were sent to several ranks
     std::uint64_t objects_received =
-        0;                      ///< number of objects whose boxes were sent to this rank, or of entries in its octants
+        0;                      ///< number of entries in this rank's octants; if boxes were sent, of received objects
     std::uint64_t octants = 0;  ///< number of octants that this rank stores
 };
 /// Returns the costs of the last call. Throws: Error{usage} if `engine` is not an MPI engine.

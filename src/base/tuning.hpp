@@ -13,7 +13,8 @@
 //   widths of registers, rows and columns that are tested together, slots of a row, the arithmetic of rounding, 8 entries per box:
 //     kernels and proofs depend on them
 //   prefetch distances, the amount of memory committed at once: no path depends on them
-//   weights that distribute work among ranks (engine/mpi/partition/octant_owners.cpp): any weights give the same result
+//   weights that distribute work among ranks (engine/mpi/partition/octree_planning.cpp, regional_owners.cpp): any weights give the same
+//     result
 //   timeouts, polling intervals, retries of worker processes: tests of faults have their own plans
 //   decisions by measured seconds (scene/scene_step.cpp): Scene::step switches them off
 #pragma once
@@ -155,6 +156,16 @@ struct Tuning {
         std::uint64_t octants = 8;  ///< minimum number of octants for each rank, if not all ranks store the octree
         /// Minimum number of objects on a rank for each octant of an octree that all ranks store. May be 0.
         std::uint64_t objects_per_octant = 3;
+        double coordinates = 1 << 10;  ///< float32 coordinates per side of an octant; with fewer, the octant is fine
+        double rounded_coordinates = 1 << 15;  ///< the same if boxes are rounded
+        double max_fine_part = 0.125;          ///< boxes are sent if more of the octree's octants are fine leaves
+        double max_inner_part = 0.25;          ///< boxes are sent if more of the entries are in inner octants
+        unsigned calls_with_boxes = 100;       ///< calls that send boxes after a call in which entries were not enough
+        unsigned part_of_ranks =
+            4;  ///< objects are near each other if at most one rank in this many has much of an octant
+        double crowd_part = 0.75;       ///< part of scan.max_tests_per_box from which boxes are fetched
+        double core_part = 0.25;        ///< the same for octants that may have a dense core
+        double handed_part = 0.25;      ///< the same for the number of entries that are handed down
         std::size_t key_samples = 64;   ///< sampled keys per rank
         std::size_t relayed = 1 << 20;  ///< pairs per message
         unsigned row_bin_bits = 14;     ///< log2 of the maximum number of bins of objects by which pairs are counted

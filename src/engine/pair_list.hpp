@@ -44,6 +44,7 @@ struct PairStorage {
             chunk = chunk.first(keep(std::span(pairs, chunk.size())));
             size += chunk.size();
         }
+        std::erase_if(chunks, [](std::span<const Pair> chunk) { return chunk.empty(); });
     }
 
 private:

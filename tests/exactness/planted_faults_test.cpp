@@ -59,8 +59,8 @@ constexpr auto planted_here = std::to_array<Planted>({
     {"sweep_repeats_block", Fault::sweep_repeats_block},
     {"part_joined_twice", Fault::part_joined_twice},
 });
-// Four values of Fault are missing here: the first is no fault, tests/mpi plants the two faults of ranks, and tests/cli that of a class.
-static_assert(planted_here.size() + 4 == fault_count);
+// Five values of Fault are missing here: the first is no fault, tests/mpi plants the three faults of ranks, and tests/cli that of a class.
+static_assert(planted_here.size() + 5 == fault_count);
 
 INSTANTIATE_TEST_SUITE_P(, PlantedFault, ::testing::ValuesIn(planted_here), planted_name_of);
 

@@ -162,6 +162,16 @@ void shrink_later(Tuning& tuning, Shrinker& to) {
     to.one_of<std::size_t>(tuning.output.slotted_pairs_per_row, {0, 2, 12});
     to.one_of<unsigned>(tuning.output.max_slotted_row_bits, {2, 14});
     to.one_of<std::size_t>(tuning.sweep.cell_rows_per_call, {4, 8, 4096});
+    to.one_of<double>(tuning.ranks.coordinates, {0, 0, 1 << 12, 1 << 20});
+    to.one_of<double>(tuning.ranks.rounded_coordinates, {0, 0, 1 << 12, 1 << 20});
+    to.one_of<double>(tuning.ranks.max_fine_part, {0, 0.5, 1});
+    to.one_of<double>(tuning.ranks.max_inner_part, {0.2, 1});
+    to.one_of<unsigned>(tuning.ranks.part_of_ranks, {1, 4});
+    to.one_of<double>(tuning.ranks.crowd_part, {0, 1});
+    to.one_of<double>(tuning.ranks.core_part, {0, 1});
+    to.one_of<double>(tuning.ranks.handed_part, {0, 1});
+    to.one_of<unsigned>(tuning.ranks.calls_with_boxes, {0, 1});
+    tuning.ranks.calls_with_boxes = std::min(tuning.ranks.calls_with_boxes, 3u);
 }
 
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.

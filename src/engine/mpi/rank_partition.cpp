@@ -33,13 +33,13 @@ void RankSearch::plan(RankCall& rank_call, const BoxSource& own, std::optional<O
     planning.emplace(comm_, rank_call.joint, own, rank_call.stop.get_token());
 }
 
-/// Entries are sent if pairs in doubt can wait until the scan has ended, unless it is known that many boxes will be needed: from the plan,
-/// or from an earlier call of this engine, if that call had about as many objects.
-bool RankSearch::can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) const {
+/// Entries are sent if pairs in doubt can wait until the scan has ended, unless many boxes will probably be needed: as the plan says, or
+/// because an earlier call of this engine needed them.
+bool RankSearch::can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) {
     const bool kept = rank_call.indexed == nullptr && output_kind_of(rank_call.output) != OutputKind::sink;
     const bool whole_list = rank_call.output.list == nullptr || !rank_call.request.options.limit;
-    const std::uint64_t objects = rank_call.joint.objects();
-    const bool failed = objects / 2 < objects_with_boxes_ && objects_with_boxes_ / 2 <= objects;
+    const bool failed = calls_with_boxes_ > 0;
+    if (failed) --calls_with_boxes_;
     return kept && whole_list && planning.whole() && !planning.needs_coordinates() && !failed;
 }
 
@@ -51,10 +51,11 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
     RankExecutor executor(threads, rank_call.stops);
     encode(rank_call, own, planning.take_shared(), executor);
     EntryExchange exchange(comm_, rank_call.joint, octree, entries_);
-    std::vector<std::uint32_t> entries = exchange.entries();  // number of entries of each octant
+    std::vector<std::uint32_t> own_entries, entries;  // number of entries of each octant, of this rank and of all ranks
+    rank_call.agreement.together([&] { entries = own_entries = exchange.entries(); });
     comm_.add_up(std::span(entries));
     const bool inner = check_entries(octree, entries);
-    const OctantOwners owners = owners_of_entries(rank_call, planning, exchange.entries(), entries);
+    const OctantOwners owners = owners_of_entries(rank_call, planning, own_entries, entries);
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.pack);
         exchange.pack(executor, owners);
@@ -85,7 +86,12 @@ RankShare RankSearch::exchange_entries(RankCall& rank_call, const BoxSource& own
 }
 
 /// Makes the entries of this rank's objects.
-void RankSearch::encode(RankCall& rank_call, const BoxSource& own, OctreeLayout layout, Executor& executor) {
+void RankSearch::encode(RankCall& rank_call, const BoxSource& own, OctreeLayout layout, RankExecutor& executor) {
+    // A block of objects has two lists for each octant. So few blocks have lists of many entries, whatever the number of threads.
+    constexpr std::size_t objects_per_octant = 16;
+    const std::size_t octants = layout.directory.octants().size();
+    executor.limit_width(
+        unsigned(std::min<std::size_t>(executor.width(), own.size() / (objects_per_octant * octants) + 1)));
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.build);
         const PositionedObjects objects(own, rank_call.joint);
@@ -106,7 +112,8 @@ void RankSearch::fetch_boxes(RankCall& rank_call, const OctreeRange& octants) {
         for (unsigned set = 0; set < rank_call.sets(); ++set)
             rank_call.fetched[set] = fetch_objects(comm_, {rank_call.joint, set, rank_call.slices[set]}, wanted[set]);
     }
-    rank_call.agreement.together([&] { rank_call.known.emplace(rank_call.joint, rank_call.fetched); });
+    const std::uint64_t most_postponed = octants.octree.entry_count(octants.begin, octants.end);
+    rank_call.agreement.together([&] { rank_call.known.emplace(rank_call.joint, rank_call.fetched, most_postponed); });
 }
 
 /// Collective. Returns the owners of octants. `own`, `entries`: number of entries of each octant, of this rank and of all ranks.
@@ -149,9 +156,9 @@ bool RankSearch::check_entries(const LinearOctree& octree, std::span<const std::
         inner += octree.octants()[octant].leaf() ? 0 : own;
         largest = std::max(largest, own);
     }
-    // Entries of inner octants are sent with their boxes, so many of them would take more bytes than the boxes of all objects.
-    constexpr std::uint64_t least_part = 4;
-    if (largest > tuning().scan.max_swept_list || inner * least_part > all) throw NeedsBoxes{};
+    // The boxes of entries in inner octants are fetched, so many of them would take more bytes than the boxes of all objects.
+    const bool many = double(inner) > tuning().ranks.max_inner_part * double(all);
+    if (largest > tuning().scan.max_swept_list || many) throw NeedsBoxes{};
     return inner > 0;
 }
 

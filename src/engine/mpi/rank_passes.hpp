@@ -1,9 +1,11 @@
-// RankPasses: builds the linear octree of the objects that a rank received, and scans the octants that the rank owns.
+// RankPasses: has the linear octree of a rank, which it builds unless entries were received, and scans the octants that the rank owns.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <thread>
@@ -36,7 +38,9 @@ public:
     RankExecutor(Executor& executor, StopRelay& stops, const PairNaming& naming = {})
         : executor_(executor), stops_(stops), naming_(naming) {}
 
-    unsigned width() const override { return executor_.width(); }
+    unsigned width() const override { return std::min(most_width_, executor_.width()); }
+    /// Sets an upper bound of width(), by which steps choose their number of shares.
+    void limit_width(unsigned most) { most_width_ = most; }
     void for_each(std::size_t count, const std::function<void(std::size_t)>& body) override;
     void for_each_writing(std::size_t count, const std::function<void(std::size_t, ShareWriter&)>& body) override;
 
@@ -47,6 +51,7 @@ private:
     Executor& executor_;
     StopRelay& stops_;
     PairNaming naming_;
+    unsigned most_width_ = std::numeric_limits<unsigned>::max();
     std::thread::id thread_ = std::this_thread::get_id();
 };
 

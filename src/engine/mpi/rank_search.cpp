@@ -7,6 +7,7 @@
 
 #include "base/test_hooks.hpp"
 #include "base/timed.hpp"
+#include "base/tuning.hpp"
 #include "boxes/invalid_box.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 #include "engine/mpi/comm/relay.hpp"
@@ -130,8 +131,11 @@ bool RankSearch::find_by_entries(RankCall& rank_call, const BoxSource& own, Octr
         return true;
     } catch (const NeedsBoxes&) {
         count_path(Path::ranks_bounds_missing);
-        objects_with_boxes_ = rank_call.joint.objects();
+        calls_with_boxes_ = tuning().ranks.calls_with_boxes;
+        costs_.objects_received = 0;
         rank_call.known.reset();
+        rank_call.inner.reset();
+        rank_call.fetched = {};
         detail::storage_of(found_).reset();
         if (rank_call.output.list != nullptr) detail::storage_of(*rank_call.output.list).reset();
         return false;

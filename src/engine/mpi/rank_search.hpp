@@ -18,7 +18,8 @@
 //           sorts its pairs                                                                   (ascending_pieces.hpp)
 //
 // Result     the pieces of all ranks, in rank order, are the pairs that the local engine finds.
-// Memory     each rank stores the top of the octree, its own octants, and a few numbers for each rank and octant of the top.
+// Memory     each rank stores the whole octree if the ranks have at least three objects for each octant. Otherwise it stores the top of
+//            the octree and its own octants. It also stores a few numbers for each rank and for each octant that all ranks store.
 //            No data of all ranks is gathered on one rank, except the pairs with Recipients::first.
 #pragma once
 
@@ -127,9 +128,9 @@ private:
     struct NeedsBoxes {};
     RankShare plan_alone(RankCall& rank_call, const BoxSource& own);
     void plan(RankCall& rank_call, const BoxSource& own, std::optional<OctreePlanning>& planning);
-    bool can_send_entries(const RankCall& rank_call, const OctreePlanning& planning) const;
+    bool can_send_entries(const RankCall& rank_call, const OctreePlanning& planning);
     RankShare exchange_entries(RankCall& rank_call, const BoxSource& own, OctreePlanning& planning);
-    void encode(RankCall& rank_call, const BoxSource& own, OctreeLayout layout, Executor& executor);
+    void encode(RankCall& rank_call, const BoxSource& own, OctreeLayout layout, RankExecutor& executor);
     void fetch_boxes(RankCall& rank_call, const OctreeRange& octants);
     OctantOwners owners_of_entries(RankCall& rank_call, const OctreePlanning& planning,
                                    std::span<const std::uint32_t> own, std::span<const std::uint32_t> entries);
@@ -159,7 +160,7 @@ private:
     std::array<ObjectExchange::Memory, 2> exchanged_;
     Routing::Memory routing_;
     EntryExchange::Memory entries_;
-    std::uint64_t objects_with_boxes_ = 0;  // number of objects of the last call that could not send entries
+    unsigned calls_with_boxes_ = 0;  // number of the next calls that send boxes; the same on all ranks
     PairList found_;
     RankCosts costs_;
 };

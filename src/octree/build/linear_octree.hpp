@@ -6,7 +6,7 @@
 //   entries(octant) lists first the boxes that have their home there: the leaf that they begin in. Ghosts follow: boxes
 //   that reach into the octant from elsewhere or are too large for a leaf. Both parts ascend by object.
 //   Class bits are set as boxes/entry.hpp says.
-//   The octree is a function of the source alone. Blocks of objects are only shares of the work.
+//   The octree is a function of the source alone, until arrange() replaces its entries. Blocks of objects are only shares of the work.
 //
 // A build takes space and directory from a plan (octree/plan/octree_plan.hpp). Then it runs these steps with an executor, each over blocks
 // of objects or ranges of octants:

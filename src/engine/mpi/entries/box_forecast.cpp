@@ -43,10 +43,10 @@ bool may_be_crowd(const LinearOctree& octree, OctantIndex octant, std::size_t ab
     const std::uint64_t entries = octree.entry_count(octant);
     if (entries == 0 || double(entries) + double(above) <= most_tests) return false;
     // Estimates of octants that were divided as far as the split rule wants are reliable. Others may have a dense core.
-    constexpr double part = 0.75, part_with_core = 0.25, handed_part = 0.25;
+    const Tuning::Ranks& parts = tuning().ranks;
     const bool may_have_core = double(entries) > tuning().split.always_above;
-    return double(above) > handed_part * most_tests ||
-           estimated_tests(octree, octant) > (may_have_core ? part_with_core : part) * most_tests;
+    return double(above) > parts.handed_part * most_tests ||
+           estimated_tests(octree, octant) > (may_have_core ? parts.core_part : parts.crowd_part) * most_tests;
 }
 
 }  // namespace

@@ -67,7 +67,8 @@ public:
     void arrange(const InnerEntries& inner);
 
 private:
-    /// Entries of one list of an octant, of one set, on one rank. At most tuning().scan.max_swept_list, else they are a crowd.
+    /// Number of entries of one set in one list of an octant, on one rank. 16 bits are enough: the caller sends no entries if an octant has
+    /// more than tuning().scan.max_swept_list.
     using Count = std::uint16_t;
     static constexpr unsigned lists = 2;
 

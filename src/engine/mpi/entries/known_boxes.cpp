@@ -5,10 +5,11 @@
 
 namespace octopair {
 
-KnownBoxes::KnownBoxes(const JointCall& call, const std::array<ObjectArrays, 2>& known)
+KnownBoxes::KnownBoxes(const JointCall& call, const std::array<ObjectArrays, 2>& known, std::uint64_t most_postponed)
     : ForwardingSource(boxes_),
       tables_{PlaceTable(known[0].positions.span()), PlaceTable(known[1].positions.span())},
       second_begin_(call.join ? std::uint32_t(call.totals[0]) : 0),
+      most_postponed_(most_postponed),
       first_(known[0].view()),
       second_(known[1].view()),
       boxes_(first_, call.join ? &second_ : nullptr, call.form) {}
@@ -29,8 +30,8 @@ std::uint32_t KnownBoxes::PlaceTable::place(std::uint32_t position) const {
     const std::size_t at = std::size_t(position - base) >> shift;  // wraps to a large number before the base
     if (at + 1 >= starts.size()) throw MissingBounds{};
     const auto end = positions.begin() + starts[at + 1];
-    const auto found = std::find(positions.begin() + starts[at], end, position);
-    if (found == end) throw MissingBounds{};
+    const auto found = std::lower_bound(positions.begin() + starts[at], end, position);
+    if (found == end || *found != position) throw MissingBounds{};
     return std::uint32_t(found - positions.begin());
 }
 
@@ -45,6 +46,7 @@ bool KnownBoxes::is_pair(std::uint32_t a, std::uint32_t b) const { return boxes_
 
 std::size_t KnownBoxes::refused(const DoubtfulPairs& doubtful, std::uint32_t*) const {
     const std::lock_guard lock(mutex_);
+    if (postponed_.size() + doubtful.size() > most_postponed_) throw MissingBounds{};
     for (std::size_t i = 0; i < doubtful.size(); ++i) postponed_.push_back(doubtful[i]);
     return 0;
 }

@@ -21,14 +21,15 @@ struct MissingBounds {};
 
 class KnownBoxes final : public ForwardingSource {
 public:
-    /// Borrows all arguments. `known`: the objects whose boxes are known, by set, with ascending positions.
-    KnownBoxes(const JointCall& call, const std::array<ObjectArrays, 2>& known);
+    /// Borrows all arguments. `known`: the objects whose boxes are known, by set, with ascending positions. `most_postponed`: maximum
+    /// number of pairs in doubt that are kept.
+    KnownBoxes(const JointCall& call, const std::array<ObjectArrays, 2>& known, std::uint64_t most_postponed = 0);
 
     std::uint32_t second_begin() const override { return second_begin_; }
     bool has_all_bounds() const override { return false; }
     /// Throws: MissingBounds.
     bool is_pair(std::uint32_t a, std::uint32_t b) const override;
-    /// Keeps the pairs in doubt (take_postponed()), and refuses none.
+    /// Keeps the pairs in doubt (take_postponed()), and refuses none. Throws: MissingBounds if they are too many.
     std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override;
     /// Throws: MissingBounds.
     void load_bounds(std::span<Entry> entries) const override;
@@ -38,7 +39,7 @@ public:
 
 private:
     /// Lookup table from ascending positions to their places. The positions from base + (i << shift) to base + ((i + 1) << shift) - 1 are at
-    /// the places from starts[i] to starts[i + 1] - 1, which are few.
+    /// the places from starts[i] to starts[i + 1] - 1.
     struct PlaceTable {
         explicit PlaceTable(std::span<const std::uint32_t> all);
         /// Throws: MissingBounds.
@@ -53,6 +54,7 @@ private:
 
     const std::array<PlaceTable, 2> tables_;  // by set
     const std::uint32_t second_begin_;
+    const std::uint64_t most_postponed_;
     const Objects first_, second_;
     const BoxSource boxes_;
     mutable std::mutex mutex_;

@@ -48,11 +48,11 @@ public:
     explicit PairFilter(std::vector<Pair> pairs)
         : pairs_(std::move(pairs)),
           shift_(64 - unsigned(std::bit_width(64 * pairs_.size()))),
-          marks_(std::size_t(1) << (64 - shift_), 0) {
+          marks_((std::size_t(1) << (64 - shift_)) / 8, 0) {
         std::ranges::sort(pairs_);
-        for (const Pair& pair : pairs_) marks_[hash(pair)] = 1;
+        for (const Pair& pair : pairs_) marks_[hash(pair) / 8] |= std::uint8_t(1u << hash(pair) % 8);
     }
-    std::uint8_t may_have(const Pair& pair) const { return marks_[hash(pair)]; }
+    unsigned may_have(const Pair& pair) const { return unsigned(marks_[hash(pair) / 8]) >> hash(pair) % 8 & 1u; }
     bool has(const Pair& pair) const { return may_have(pair) != 0 && std::ranges::binary_search(pairs_, pair); }
 
 private:
@@ -62,7 +62,7 @@ private:
 
     std::vector<Pair> pairs_;
     unsigned shift_;
-    std::vector<std::uint8_t> marks_;  // by hash: 1 if a pair has this hash
+    std::vector<std::uint8_t> marks_;  // a bit for each hash: 1 if a pair has this hash
 };
 
 }  // namespace
@@ -80,8 +80,10 @@ void remove_pairs(detail::PairStorage& list, std::vector<Pair> removed) {
             if (marks == 0) {
                 out = out == some.data() ? out + some.size() : std::copy(some.begin(), some.end(), out);
             } else {
-                out = std::remove_copy_if(some.begin(), some.end(), out,
-                                          [&](const Pair& pair) { return filter.has(pair); });
+                for (const Pair& pair : some) {
+                    *out = pair;
+                    out += filter.has(pair) ? 0 : 1;
+                }
             }
         }
         return std::size_t(out - pairs.data());

@@ -145,15 +145,18 @@ OctreePlanning::OctreePlanning(Communicator& comm, const JointCall& call, const 
     OwnSample sample;
     agreement.together([&] { sample = own_sample(call, own); });
     space_ = fit_together(comm, sample.for_space, call.objects());
-    std::vector<CellBox> cells(sample.boxes.size());
-    agreement.together([&] { space_.cells(sample.boxes, cells); });
+    std::vector<CellBox> cells;
+    agreement.together([&] {
+        cells.resize(sample.boxes.size());
+        space_.cells(sample.boxes, cells);
+    });
     // If all ranks will store the octree, its octants are distributed later. Then a rank needs no more than one octant to grow.
     const std::uint64_t octants = is_shared(estimated_octants()) ? 1 : tuning().ranks.octants;
     const std::uint64_t most = octant_sample(call.objects()).size() / (octants * comm.size());
     const SharedTop top(comm, growth_, most, cells);
-    estimate(top);
-    std::vector<std::uint64_t> work;
     agreement.together([&] {
+        estimate(top);
+        std::vector<std::uint64_t> work;
         for (std::size_t i = 0; i < estimates_.size(); ++i)
             work.push_back(estimates_[i].work(growth_.objects(top.octants()[i].boxes)));
         growers_ = OctantOwners(work, comm.size());
@@ -306,24 +309,24 @@ void OctreePlanning::refine(const SharedTop& top) {
             fine += octants[next].leaf() && octants[next].level >= fine_level ? 1 : 0;
         }
     }
-    constexpr std::size_t least_part = 8;
-    needs_coordinates_ |= fine > octants.size() / least_part;
+    needs_coordinates_ |= double(fine) > tuning().ranks.max_fine_part * double(octants.size());
     estimates_ = std::move(all);
 }
 
 /// Returns the first level whose octants have so few float32 coordinates on an axis that many ends of boxes are equal, or differ by less
 /// than rounding could cause. Then cells decide few hits. `exact`: boxes are not rounded.
 unsigned OctreePlanning::first_fine_level(const Space& space, bool exact) {
-    const double most_coordinates = exact ? 1 << 10 : 1 << 15;  // per side of an octant; found by measurement
-    double level = deepest + 1;
+    const double least = exact ? tuning().ranks.coordinates : tuning().ranks.rounded_coordinates;
+    int level = int(deepest);
     for (unsigned axis = 0; axis < 3; ++axis) {
         const SpaceMap& map = space.map();
         const double origin = map.origin[axis], side = double(SpaceMap::last_fine_cell + 1) / map.scale[axis];
         const double end = origin + double(map.last[axis]) / map.scale[axis];
         const double spacing = std::max(std::abs(origin), std::abs(end)) * 0x1p-23;
-        level = std::min(level, std::log2(side / (spacing * most_coordinates)));
+        // The integer part of a logarithm: it is the same on all machines.
+        if (side > 0 && spacing > 0) level = std::min(level, std::ilogb(side / (spacing * least)));
     }
-    return unsigned(std::max(0.0, level)) + 1;
+    return unsigned(std::max(0, level)) + 1;
 }
 
 std::vector<std::uint64_t> OctreePlanning::work(std::span<const std::uint32_t> entries) const {

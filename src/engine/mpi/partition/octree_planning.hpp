@@ -60,8 +60,8 @@ public:
 
     /// Returns the estimated work in each octant that all ranks store.
     std::vector<std::uint64_t> work(std::span<const std::uint32_t> entries) const;
-    /// Divides the octants that all ranks store among the ranks, one run for each. `entries`: number of entries of each octant, summed over all ranks, in any
-    /// unit. An octree that is not whole is divided without these numbers.
+    /// Divides the octants that all ranks store among the ranks, one run for each. `entries`: number of entries of each octant, of all
+    /// ranks. Another unit changes only the balance. An octree that is not whole is divided without these numbers.
     OctantOwners owners(std::span<const std::uint32_t> entries) const;
 
     /// The octants that a rank stores. It owns the octants [begin, end).

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/test_hooks.hpp"
+#include "base/tuning.hpp"
 #include "engine/mpi/comm/agreement.hpp"
 
 namespace octopair {
@@ -34,7 +35,6 @@ void balance(std::vector<std::uint32_t>& owners, std::span<const std::uint64_t> 
 
 std::optional<OctantOwners> regional_owners(Communicator& comm, const OctantLoads& loads) {
     // If objects are near each other, few ranks have much of an octant. Otherwise all ranks have about an equal part.
-    constexpr std::uint64_t part_of_ranks = 4;
     const unsigned ranks = comm.size();
     std::uint64_t not_empty = 0,
                   much = 0;  // octants with entries, and those of which this rank has at least half an equal part
@@ -43,7 +43,7 @@ std::optional<OctantOwners> regional_owners(Communicator& comm, const OctantLoad
         not_empty += all > 0 ? 1 : 0;
         much += all > 0 && own * 2 * ranks >= all ? 1 : 0;
     }
-    if (comm.sum(much) > not_empty + not_empty * (ranks - 1) / part_of_ranks) return {};
+    if (comm.sum(much) > not_empty + not_empty * (ranks - 1) / tuning().ranks.part_of_ranks) return {};
     count_path(Path::ranks_regional);
     // The rank with most entries of an octant, and among equals the first one.
     std::vector<std::uint64_t> largest;
