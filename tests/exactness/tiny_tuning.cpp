@@ -171,7 +171,7 @@ void shrink_later(Tuning& tuning, Shrinker& to) {
     to.one_of<double>(tuning.ranks.core_part, {0, 1});
     to.one_of<double>(tuning.ranks.handed_part, {0, 1});
     to.one_of<unsigned>(tuning.ranks.calls_with_boxes, {0, 1});
-    tuning.ranks.calls_with_boxes = std::min(tuning.ranks.calls_with_boxes, 3u);
+    tuning.ranks.calls_with_boxes = std::min(tuning.ranks.calls_with_boxes, 3u);  // tests make few calls in each scene
 }
 
 /// Accepts few sweeps and takes small samples, so that most octants count as crowded and octrees nest in them.
