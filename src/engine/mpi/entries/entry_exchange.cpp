@@ -12,19 +12,20 @@ namespace {
 
 constexpr std::array octant_lists = {OctantList::home, OctantList::ghosts};
 
+}  // namespace
+
 /// Calls visit(entries) for each run of adjacent entries of a set in a list of an octant. A list of a join has the entries of the first
 /// set before those of the second.
 template <typename Visit>
-void for_each_run_of_set(const LinearOctree& octree, OctantIndex octant, OctantList list, unsigned set, Visit&& visit) {
-    octree.for_each_run(octant, list, [&](std::span<const CellEntry> run) {
+void EntryExchange::for_each_run(OctantIndex octant, OctantList list, unsigned set, Visit&& visit) const {
+    if (!call_.join) return octree_.for_each_run(octant, list, visit);
+    octree_.for_each_run(octant, list, [&](std::span<const CellEntry> run) {
         const auto second = std::ranges::find_if(run, [](const CellEntry& entry) { return entry.ends[1] >> 31 != 0; });
         const auto of_first = std::size_t(second - run.begin());
         const auto part = set == 0 ? run.first(of_first) : run.subspan(of_first);
         if (!part.empty()) visit(part);
     });
 }
-
-}  // namespace
 
 EntryExchange::EntryExchange(Communicator& comm, const JointCall& call, LinearOctree& octree, Memory& memory)
     : comm_(comm), call_(call), octree_(octree), memory_(memory), sets_(call.join ? 2 : 1) {}
@@ -64,10 +65,7 @@ void EntryExchange::pack(unsigned rank, CellEntry* out) {
             for (const OctantList list : octant_lists) {
                 const CellEntry* const begin = out;
                 const auto copy = [&](std::span<const CellEntry> run) { out = std::copy(run.begin(), run.end(), out); };
-                if (octree_.octants()[octant].leaf()) {
-                    if (call_.join) for_each_run_of_set(octree_, octant, list, set, copy);
-                    if (!call_.join) octree_.for_each_run(octant, list, copy);
-                }
+                if (octree_.octants()[octant].leaf()) for_each_run(octant, list, set, copy);
                 *counts++ = Count(out - begin);
             }
         }

@@ -74,6 +74,8 @@ private:
 
     bool is_packed(unsigned rank) const { return rank != comm_.rank() || call_.join; }
     void pack(unsigned rank, CellEntry* out);
+    template <typename Visit>
+    void for_each_run(OctantIndex octant, OctantList list, unsigned set, Visit&& visit) const;
 
     Communicator& comm_;
     const JointCall& call_;

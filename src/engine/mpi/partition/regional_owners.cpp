@@ -55,9 +55,10 @@ std::optional<OctantOwners> regional_owners(Communicator& comm, const OctantLoad
     comm.take_largest(largest);
     std::optional<OctantOwners> result;
     agreement.together([&] {
-        std::vector<std::uint32_t> owners;
-        for (const std::uint64_t most_entries : largest)
-            owners.push_back(ranks - 1 - std::uint32_t(most_entries & ~std::uint32_t(0)));
+        std::vector<std::uint32_t> owners(largest.size());
+        std::ranges::transform(largest, owners.begin(), [=](std::uint64_t most_entries) {
+            return ranks - 1 - std::uint32_t(most_entries & ~std::uint32_t(0));
+        });
         balance(owners, loads.work, ranks);
         result.emplace(std::move(owners), ranks);
     });
