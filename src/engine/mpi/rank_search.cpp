@@ -157,7 +157,7 @@ void RankSearch::run_pass(RankCall& rank_call, const std::function<void()>& pass
 }
 
 /// Returns those of the found pairs that the pair rule refuses: none unless entries were sent.
-std::vector<Pair> RankSearch::settle(RankCall& rank_call) {
+std::vector<PostponedPair> RankSearch::settle(RankCall& rank_call) {
     if (!rank_call.known) return {};
     const CostMeter meter(comm_, costs_.scan);
     return refused_pairs(comm_, rank_call.joint, rank_call.slices, rank_call.known->take_postponed());
@@ -165,7 +165,7 @@ std::vector<Pair> RankSearch::settle(RankCall& rank_call) {
 
 /// Removes the pairs that the pair rule refuses from a list of the found pairs.
 void RankSearch::drop_refused(RankCall& rank_call, detail::PairStorage& list) {
-    std::vector<Pair> refused = settle(rank_call);
+    std::vector<PostponedPair> refused = settle(rank_call);
     rank_call.agreement.together([&] {
         const CostMeter meter(comm_, costs_.scan);
         remove_pairs(list, std::move(refused));

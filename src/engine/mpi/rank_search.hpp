@@ -141,7 +141,7 @@ private:
     Objects received(unsigned set) const { return exchanged_[set].received.view(); }
     void search(RankCall& rank_call, const detail::Request& own_octants);
     void run_pass(RankCall& rank_call, const std::function<void()>& pass);
-    std::vector<Pair> settle(RankCall& rank_call);
+    std::vector<PostponedPair> settle(RankCall& rank_call);
     void drop_refused(RankCall& rank_call, detail::PairStorage& list);
     void build(RankCall& rank_call, Call& call);
     void count(RankCall& rank_call, Call& call);

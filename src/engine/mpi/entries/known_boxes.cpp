@@ -47,11 +47,11 @@ bool KnownBoxes::is_pair(std::uint32_t a, std::uint32_t b) const { return boxes_
 std::size_t KnownBoxes::refused(const DoubtfulPairs& doubtful, std::uint32_t*) const {
     const std::lock_guard lock(mutex_);
     if (postponed_.size() + doubtful.size() > most_postponed_) throw MissingBounds{};
-    for (std::size_t i = 0; i < doubtful.size(); ++i) postponed_.push_back(doubtful[i]);
+    for (std::size_t i = 0; i < doubtful.size(); ++i) postponed_.push_back({doubtful[i], &doubtful[i]});
     return 0;
 }
 
-std::vector<Pair> KnownBoxes::take_postponed() const {
+std::vector<PostponedPair> KnownBoxes::take_postponed() const {
     const std::lock_guard lock(mutex_);
     return std::exchange(postponed_, {});
 }

@@ -19,6 +19,12 @@ namespace octopair {
 /// Exception for a step that needs the bounds of an entry whose box is not known.
 struct MissingBounds {};
 
+/// A pair in doubt, and the memory that it was in when the scan found it: mostly that of the list that it was written to.
+struct PostponedPair {
+    Pair pair;
+    const Pair* place;
+};
+
 class KnownBoxes final : public ForwardingSource {
 public:
     /// Borrows all arguments. `known`: the objects whose boxes are known, by set, with ascending positions. `most_postponed`: maximum
@@ -35,7 +41,7 @@ public:
     void load_bounds(std::span<Entry> entries) const override;
 
     /// Returns the pairs in doubt, in no particular order, and forgets them.
-    std::vector<Pair> take_postponed() const;
+    std::vector<PostponedPair> take_postponed() const;
 
 private:
     /// Lookup table from ascending positions to their places. The positions from base + (i << shift) to base + ((i + 1) << shift) - 1 are at
@@ -58,7 +64,7 @@ private:
     const Objects first_, second_;
     const BoxSource boxes_;
     mutable std::mutex mutex_;
-    mutable std::vector<Pair> postponed_;
+    mutable std::vector<PostponedPair> postponed_;
 };
 
 }  // namespace octopair

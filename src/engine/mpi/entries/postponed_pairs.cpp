@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
+#include <span>
 #include <utility>
 
 #include "base/test_hooks.hpp"
@@ -11,13 +13,13 @@
 
 namespace octopair {
 
-std::vector<Pair> refused_pairs(Communicator& comm, const JointCall& call, const std::array<Objects, 2>& slices,
-                                std::vector<Pair> postponed) {
+std::vector<PostponedPair> refused_pairs(Communicator& comm, const JointCall& call,
+                                         const std::array<Objects, 2>& slices, std::vector<PostponedPair> postponed) {
     Agreement agreement(comm);
     std::array<std::vector<std::uint32_t>, 2> wanted;
     const auto second_begin = call.join ? std::uint32_t(call.totals[0]) : 0;
     agreement.together([&] {
-        for (const Pair& pair : postponed) {
+        for (const auto& [pair, place] : postponed) {
             wanted[0].push_back(pair.a);
             wanted[call.join ? 1 : 0].push_back(pair.b - second_begin);
         }
@@ -33,9 +35,11 @@ std::vector<Pair> refused_pairs(Communicator& comm, const JointCall& call, const
         if (!postponed.empty()) count_path(Path::ranks_pair_postponed);
         const KnownBoxes boxes(call, fetched);
         const bool keeps_all = planted(Fault::postponed_pairs_kept);
-        std::erase_if(postponed, [&](const Pair& pair) { return keeps_all || boxes.is_pair(pair.a, pair.b); });
+        std::erase_if(postponed, [&](const PostponedPair& postponed_pair) {
+            return keeps_all || boxes.is_pair(postponed_pair.pair.a, postponed_pair.pair.b);
+        });
         if (!postponed.empty()) count_path(Path::ranks_pair_refused);
-        for (Pair& pair : postponed) pair.b -= second_begin;
+        for (PostponedPair& refused : postponed) refused.pair.b -= second_begin;
     });
     return postponed;
 }
@@ -65,11 +69,39 @@ private:
     std::vector<std::uint8_t> marks_;  // a bit for each hash: 1 if a pair has this hash
 };
 
+/// Divides the chunks of a list at pairs that are at their places in the list, and so removes these pairs. Returns the other pairs.
+std::vector<Pair> cut_out(detail::PairStorage& list, std::vector<PostponedPair> removed) {
+    constexpr std::less<> before;
+    std::ranges::sort(removed, before, &PostponedPair::place);
+    std::vector<std::span<const Pair>> chunks;
+    std::vector<std::uint8_t> cut(removed.size(), 0);
+    for (const std::span<const Pair> chunk : list.chunks) {
+        const Pair* begin = chunk.data();
+        const Pair* const end = begin + chunk.size();
+        auto next = std::ranges::lower_bound(removed, begin, before, &PostponedPair::place);
+        for (; next != removed.end() && before(next->place, end); ++next) {
+            if (*next->place != next->pair) continue;  // the memory had the pair before it belonged to the list
+            if (begin != next->place) chunks.push_back({begin, next->place});
+            begin = next->place + 1;
+            cut[std::size_t(next - removed.begin())] = 1;
+        }
+        if (begin != end) chunks.push_back({begin, end});
+    }
+    list.chunks = std::move(chunks);
+    list.size -= std::uint64_t(std::ranges::count(cut, 1));
+    std::vector<Pair> others;
+    for (std::size_t i = 0; i < removed.size(); ++i) {
+        if (cut[i] == 0) others.push_back(removed[i].pair);
+    }
+    return others;
+}
+
 }  // namespace
 
-void remove_pairs(detail::PairStorage& list, std::vector<Pair> removed) {
-    if (removed.empty()) return;
-    const PairFilter filter(std::move(removed));
+void remove_pairs(detail::PairStorage& list, std::vector<PostponedPair> removed) {
+    std::vector<Pair> others = cut_out(list, std::move(removed));
+    if (others.empty()) return;
+    const PairFilter filter(std::move(others));
     list.keep_some([&](std::span<Pair> pairs) {
         constexpr std::size_t most = 64;  // pairs that are tested at a time, without a branch for each
         Pair* out = pairs.data();
