@@ -22,8 +22,7 @@ namespace octopair {
 /// Positions of the objects that a rank received, by set. Empty if pairs keep the numbers that the scan gives to objects.
 using ObjectPositions = std::array<std::span<const std::uint32_t>, 2>;
 
-/// What happens to the pairs that a rank finds before they are written: each object gets its position among the objects of all ranks.
-/// Then pairs that `wanted` excludes are dropped.
+/// How a writer changes pairs. Objects get their positions among the objects of all ranks. Then pairs that `wanted` excludes are dropped.
 struct PairNaming {
     bool join = false;
     ObjectPositions positions = {};
