@@ -257,15 +257,14 @@ void OctreePlanning::share(const SharedTop& top, Grown grown) {
         std::uint64_t needs_coordinates;
     };
     const auto parts = comm_.all_gather(Part{grown.shape.size(), grown.needs_coordinates ? 1u : 0u});
-    std::uint64_t octants = 0;
+    std::uint64_t octants = 0, before_own = 0;  // number of octants of all ranks, and of the ranks before this one
+    for (unsigned rank = 0; rank < comm_.size(); ++rank) {
+        if (rank < comm_.rank()) before_own += parts[rank].octants;
+        octants += parts[rank].octants;
+        needs_coordinates_ |= parts[rank].needs_coordinates != 0;
+    }
+    for (Crowd& crowd : grown.crowds) crowd.octant += OctantIndex(before_own);
     Agreement agreement(comm_);
-    agreement.together([&] {
-        for (unsigned rank = 0; rank < comm_.size(); ++rank) {
-            for (Crowd& crowd : grown.crowds) crowd.octant += rank == comm_.rank() ? OctantIndex(octants) : 0;
-            octants += parts[rank].octants;
-            needs_coordinates_ |= parts[rank].needs_coordinates != 0;
-        }
-    });
     whole_ = is_shared(octants);
     count_path(whole_ ? Path::ranks_whole_octree : Path::ranks_part_of_octree);
     if (whole_) {

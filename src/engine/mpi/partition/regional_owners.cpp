@@ -36,8 +36,8 @@ void balance(std::vector<std::uint32_t>& owners, std::span<const std::uint64_t> 
 std::optional<OctantOwners> regional_owners(Communicator& comm, const OctantLoads& loads) {
     // If objects are near each other, few ranks have much of an octant. Otherwise all ranks have about an equal part.
     const unsigned ranks = comm.size();
-    std::uint64_t not_empty = 0,
-                  much = 0;  // octants with entries, and those of which this rank has at least half an equal part
+    std::uint64_t not_empty = 0;  // number of octants with entries
+    std::uint64_t much = 0;       // number of octants of which this rank has at least half an equal part
     for (std::size_t octant = 0; octant < loads.all.size(); ++octant) {
         const std::uint64_t own = loads.own[octant], all = loads.all[octant];
         not_empty += all > 0 ? 1 : 0;
