@@ -60,7 +60,7 @@ namespace octopair {
     path(ranks_pair_postponed) path(ranks_pair_refused) \
     /* scene/ */ \
     path(step_full) path(step_idle) path(step_incremental) path(step_too_dear) path(log_overflowed) path(octree_rebuilt) \
-    path(octree_for_queries) path(pairs_waited) path(pairs_merged)
+    path(octree_for_queries) path(queries_sorted) path(pairs_waited) path(pairs_merged)
 // clang-format on
 
 enum class Path : unsigned {

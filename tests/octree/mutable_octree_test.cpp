@@ -12,6 +12,7 @@
 #include "octopair/error.hpp"
 #include "octree/build/linear_octree.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
+#include "octree/dynamic/nearest_search.hpp"
 #include "parallel/team.hpp"
 #include "support/kinds.hpp"
 
@@ -131,11 +132,11 @@ TEST_P(MutableOctreeTest, FindsAllOnceAfterChanges) {
 INSTANTIATE_TEST_SUITE_P(Kinds, MutableOctreeTest, ::testing::ValuesIn(all_kind_names()), param_name);
 
 /// Accepts every object.
-class TakeAll final : public NearestVisitor {
+class TakeAll {
 public:
-    double at_least(const Box3d&) const override { return 0; }
-    double limit() const override { return 0; }
-    void take(std::uint32_t object) override { taken.push_back(object); }
+    double at_least(const Box3d&) const { return 0; }
+    double limit() const { return 0; }
+    void take(std::uint32_t object) { taken.push_back(object); }
 
     std::vector<std::uint32_t> taken;
 };
@@ -146,7 +147,7 @@ TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     octree.search({}, found);
     EXPECT_TRUE(found.empty());
     TakeAll visitor;
-    octree.search(visitor);
+    NearestSearch(octree, RegionMap(octree.space(), {}), visitor).run();
     EXPECT_TRUE(visitor.taken.empty());
 }
 

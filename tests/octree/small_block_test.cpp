@@ -80,10 +80,10 @@ TEST(Unit, NumbersLoseNothing) {
         if (overlaps && begins_here) {
             ASSERT_TRUE(overlap(unit.small(a), unit.small(b))) << "level " << level;
         }
-        const CellBox held = unit.cells(unit.small(a));
+        const CellRegion held = unit.region(unit.small(a));
         for (unsigned axis = 0; axis < 3; ++axis) {
-            ASSERT_LE(held.lo[axis], std::max(a.lo[axis], octant.lo[axis]));
-            ASSERT_GE(held.hi[axis], std::min(a.hi[axis], octant.lo[axis] + side - 1));
+            ASSERT_LE(held.lo[axis], double(std::max(a.lo[axis], octant.lo[axis])) + 1);
+            ASSERT_GE(held.hi[axis], double(std::min(a.hi[axis], octant.lo[axis] + side - 1)));
         }
     }
 }

@@ -31,19 +31,6 @@ SmallBox Unit::small(const CellBox& box) const {
     return small;
 }
 
-CellBox Unit::cells(const SmallBox& box) const {
-    CellBox cells;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        // Returns how many cells have numbers below `number`. The callers allow for one more cell, because the product is rounded.
-        const auto cells_of = [&](unsigned number) { return std::uint32_t(float(number) / scale[axis]); };
-        const std::uint32_t last = lo[axis] + cells_of(unsigned(small_numbers)) - 1;
-        const std::uint32_t begin = lo[axis] + cells_of(box.lo(axis) < 2 ? 0 : box.lo(axis) - 1u);
-        cells.lo[axis] = std::max(lo[axis] + 1, begin) - 1;
-        cells.hi[axis] = std::min(last, lo[axis] + cells_of(box.hi(axis)) + 1);
-    }
-    return cells;
-}
-
 /// Returns the scale (numbers of a SmallBox for each cell) of a unit that has 2^side cells of the space on an axis.
 float LeafGrid::scale_of(unsigned side) {
     constexpr unsigned exponent_zero = 127, fraction_bits = 23;
@@ -84,22 +71,15 @@ LeafGrid LeafGrid::cut(const Octant& octant, std::uint32_t begin, std::span<cons
     return grid;
 }
 
-CellBox LeafGrid::cells() const {
-    CellBox cells;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        cells.lo[axis] = lo[axis];
-        cells.hi[axis] = last(axis);
-    }
-    return cells;
-}
+CellRegion LeafGrid::region() const { return region(all()); }
 
-CellBox LeafGrid::cells(const GridRange& range) const {
-    CellBox cells;
+CellRegion LeafGrid::region(const GridRange& range) const {
+    CellRegion region;
     for (unsigned axis = 0; axis < 3; ++axis) {
-        cells.lo[axis] = lo[axis] + (range.first[axis] << side(axis));
-        cells.hi[axis] = lo[axis] + (((range.last[axis] + 1) << side(axis)) - 1);
+        region.lo[axis] = lo[axis] + (range.first[axis] << side(axis));
+        region.hi[axis] = lo[axis] + ((range.last[axis] + 1) << side(axis));
     }
-    return cells;
+    return region;
 }
 
 Unit LeafGrid::own_unit() const {

@@ -6,10 +6,12 @@
 //   on; the own unit is number `begin`.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 
+#include "octree/dynamic/region_map.hpp"
 #include "octree/dynamic/small_block.hpp"
 #include "octree/plan/directory.hpp"
 #include "octree/plan/space.hpp"
@@ -23,8 +25,20 @@ struct Unit {
     std::uint32_t index = 0;
 
     SmallBox small(const CellBox& box) const;
-    /// Returns the cells of the space that an entry's box may touch within the unit.
-    CellBox cells(const SmallBox& box) const;
+    /// Returns a region that contains the part of an entry's box within the unit.
+    CellRegion region(const SmallBox& box) const {
+        CellRegion region;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            // The first and the last number of an end stand for everything before and after the unit.
+            const double cells = 1 / double(scale[axis]), first = double(lo[axis]);
+            region.lo[axis] = first + double(std::max(1, int(box.lo(axis))) - 1) * cells;
+            region.hi[axis] = first + double(std::min(last_number, int(box.hi(axis)))) * cells;
+        }
+        return region;
+    }
+
+private:
+    static constexpr int last_number = 254;
 };
 
 /// A block of a grid's cells, both ends included.
@@ -72,8 +86,8 @@ struct alignas(32) LeafGrid {
         return !inner && range.count() <= max_cells_per_entry;
     }
 
-    CellBox cells() const;
-    CellBox cells(const GridRange& range) const;
+    CellRegion region() const;
+    CellRegion region(const GridRange& range) const;
     Unit own_unit() const;
     GridRange all() const;
     /// Returns the cells of the grid that `box` touches.

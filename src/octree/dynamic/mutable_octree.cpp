@@ -232,52 +232,11 @@ void MutableOctree::search(const CellBox& box, std::vector<std::uint32_t>& found
     });
 }
 
-void MutableOctree::search(NearestVisitor& visitor) const {
-    if (!grids_.empty()) visit_octant(0, visitor);
-}
-
-void MutableOctree::visit_octant(OctantIndex octant, NearestVisitor& visitor) const {
-    const LeafGrid& grid = grids_[octant];
-    if (grid.used) visit_unit(grid.own_unit(), visitor);
-    if (!grid.inner) return visit_cells(grid, grid.all(), visitor);
-    std::array<std::pair<double, OctantIndex>, 8> children;
-    for (unsigned digit = 0; digit < 8; ++digit) {
-        const OctantIndex child = directory_.child(directory_.octants()[octant], digit);
-        children[digit] = {visitor.at_least(space_.bounds(grids_[child].cells())), child};
-    }
-    std::sort(children.begin(), children.end());
-    for (const auto& [at_least, child] : children) {
-        if (at_least <= visitor.limit()) visit_octant(child, visitor);
-    }
-}
-
-/// Visits the cells of a range that are near enough. Halves the range until it is one cell, and visits the nearer half first.
-void MutableOctree::visit_cells(const LeafGrid& leaf, const GridRange& range, NearestVisitor& visitor) const {
-    unsigned axis = 0;
-    for (unsigned other = 1; other < 3; ++other) {
-        if (range.last[other] - range.first[other] > range.last[axis] - range.first[axis]) axis = other;
-    }
-    if (range.first[axis] == range.last[axis]) {
-        leaf.for_each_cell(range, [&](const Unit& unit, const auto&) { visit_unit(unit, visitor); });
-        return;
-    }
-    GridRange low = range, high = range;
-    low.last[axis] = range.first[axis] + (range.last[axis] - range.first[axis]) / 2;
-    high.first[axis] = low.last[axis] + 1;
-    double at_low = visitor.at_least(space_.bounds(leaf.cells(low)));
-    double at_high = visitor.at_least(space_.bounds(leaf.cells(high)));
-    if (at_high < at_low) {
-        std::swap(at_low, at_high);
-        std::swap(low, high);
-    }
-    if (at_low <= visitor.limit()) visit_cells(leaf, low, visitor);
-    if (at_high <= visitor.limit()) visit_cells(leaf, high, visitor);
-}
-
-void MutableOctree::visit_unit(const Unit& unit, NearestVisitor& visitor) const {
-    units_.for_each(unit.index, [&](const SmallBox& box, std::uint32_t object) {
-        if (visitor.at_least(space_.bounds(unit.cells(box))) <= visitor.limit()) visitor.take(object);
-    });
+std::uint32_t MutableOctree::unit_at(const Cell& cell) const {
+    const LeafGrid& grid = grids_[directory_.leaf(cell).octant()];
+    std::uint32_t unit = grid.begin;
+    grid.for_each_cell(grid.range_of({cell, cell}), [&](const Unit& at, const auto&) { unit = at.index; });
+    return unit;
 }
 
 /// One search of a change, the box whose entries the change removes, and the box whose entries the change adds.

@@ -62,18 +62,8 @@ struct Hit {
     std::uint8_t around;
 };
 
-/// A search for near objects, nearest regions first.
-class NearestVisitor {
-public:
-    virtual ~NearestVisitor() = default;
-    /// Returns a lower bound on the distance to every object whose box reaches into `region`; a value above limit() if none
-    /// of them is wanted. The region is in the octree's coordinates and may be infinite.
-    virtual double at_least(const Box3d& region) const = 0;
-    /// Returns the distance beyond which objects are not wanted. May shrink during the search.
-    virtual double limit() const = 0;
-    /// Receives an object that may be within limit(). The search may pass an object more than once.
-    virtual void take(std::uint32_t object) = 0;
-};
+template <typename Visitor>
+class NearestSearch;
 
 class MutableOctree {
 public:
@@ -97,8 +87,9 @@ public:
     void erase(std::uint32_t object, const CellBox& box);
     /// Appends the objects whose cells overlap `box`, each once, in no particular order. May also append objects that are only near `box`.
     void search(const CellBox& box, std::vector<std::uint32_t>& found) const;
-    /// Passes all objects within visitor.limit() to `visitor`. Visits nearer regions before farther regions.
-    void search(NearestVisitor& visitor) const;
+    bool empty() const { return grids_.empty(); }
+    /// Returns the unit around a cell. Units of near numbers are near in memory. Requires: the octree is not empty.
+    std::uint32_t unit_at(const Cell& cell) const;
 
     /// The visits of units that some changes need.
     struct Visits {
@@ -126,6 +117,8 @@ public:
     std::size_t run(std::span<const UnitVisit> visits, std::span<const std::uint64_t> order, std::vector<Hit>& hits);
 
 private:
+    template <typename Visitor>
+    friend class NearestSearch;  // nearest_search.hpp
     struct Work;
 
     void add_range(const LinearOctree& octree, OctantIndex begin, OctantIndex end, const LoadBounds& load_bounds);
@@ -138,9 +131,6 @@ private:
     void for_each_octant_below(OctantIndex octant, const CellBox& box, Visit&& visit) const;
     template <typename Visit>
     void for_each_touched_octant(const CellBox& box, Visit&& visit) const;
-    void visit_octant(OctantIndex octant, NearestVisitor& visitor) const;
-    void visit_cells(const LeafGrid& leaf, const GridRange& range, NearestVisitor& visitor) const;
-    void visit_unit(const Unit& unit, NearestVisitor& visitor) const;
     bool list(const Work& work, Visits& out) const;
     void list_octant(OctantIndex octant, const Work& work, Visits& out) const;
 

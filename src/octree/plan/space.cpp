@@ -204,23 +204,6 @@ Space Space::fit(const SpaceSample::AllMeasured& measured, std::uint64_t objects
     return space;
 }
 
-Box3d Space::bounds(const CellBox& cells) const {
-    // One more cell on each side covers the rounding to cells; `roundings` covers the float32 operations of the map.
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    constexpr double roundings = 0x1p-21;
-    Box3d bounds;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-        const double origin = double(map_.origin[axis]), cell = (1u << SpaceMap::fine_bits) / double(map_.scale[axis]);
-        // Limits the offset to FLT_MAX: in the map, a greater difference overflows and gets the last cell, so no cell begins there.
-        const double lo = origin + std::min((double(cells.lo[axis]) - 1) * cell, double(FLT_MAX));
-        const double hi = origin + (double(cells.hi[axis]) + 1) * cell;
-        bounds.min[axis] = cells.lo[axis] == 0 ? -infinity : lo - roundings * (std::abs(origin) + std::abs(lo));
-        bounds.max[axis] =
-            cells.hi[axis] >= last_cell(axis) ? infinity : hi + roundings * (std::abs(origin) + std::abs(hi));
-    }
-    return bounds;
-}
-
 HWY_EXPORT(cells_of_entries);
 HWY_EXPORT(cells_of_boxes);
 

@@ -109,9 +109,6 @@ public:
     void cells(std::span<const Entry> entries, std::span<CellBox> boxes) const;
     void cells(std::span<const Box3f> bounds, std::span<CellBox> boxes) const;
 
-    /// Returns a box that contains all coordinates whose cells are in `cells`; infinite at the border of the space.
-    Box3d bounds(const CellBox& cells) const;
-
     const SpaceMap& map() const { return map_; }
     /// Returns the axis on which octants are longest. Octants are swept along this axis first.
     unsigned long_axis() const { return long_axis_; }

@@ -97,11 +97,6 @@ int exactly_compare_distances(const Box3d& from, const Box3d& a, const Box3d& b)
     return compare_square_sums(gaps_between(from, a), gaps_between(from, b));
 }
 
-double extreme_distance_at_least(const Box3d& a, const Box3d& b) {
-    return scaled_length({rounded_gap(a, b, 0), rounded_gap(a, b, 1), rounded_gap(a, b, 2)},
-                         1 - 2 * RoundedSquare::error);
-}
-
 double distance(const Box3d& a, const Box3d& b) {
     const Gaps gaps = gaps_between(a, b);
     std::array<double, 3> rounded;

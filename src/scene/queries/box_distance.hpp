@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "geometry/exact_sign.hpp"
 #include "octopair/queries.hpp"
@@ -23,7 +24,8 @@ struct RoundedSquare {
     static constexpr double error = 0x1p-50;
     double value = 0;
 
-    static bool within(double value) { return value >= 0x1p-900 && value <= 0x1p1000; }
+    static constexpr double least = 0x1p-900, most = 0x1p1000;
+    static bool within(double value) { return value >= least && value <= most; }
     void add(double gap) { value += gap * gap; }
     /// Compares the exact squared distances: returns -1 or 1; 0 if float64 cannot decide.
     int compare(const RoundedSquare& other) const {
@@ -46,7 +48,6 @@ inline RoundedSquare rounded_square(const Box3d& a, const Box3d& b) {
 
 bool exactly_overlap(const Sphere& sphere, const Box3d& box);
 int exactly_compare_distances(const Box3d& from, const Box3d& a, const Box3d& b);
-double extreme_distance_at_least(const Box3d& a, const Box3d& b);
 
 /// Returns whether the box is no farther from the centre than the radius.
 inline bool overlap(const Sphere& sphere, const Box3d& box) {
@@ -69,11 +70,20 @@ inline int compare_distances(const Box3d& from, const Box3d& a, const Box3d& b) 
 /// Returns the distance between two boxes, rounded to the nearest float64, ties to even; infinity if it is beyond float64.
 double distance(const Box3d& a, const Box3d& b);
 
-/// Returns a tight lower bound of distance(). A box may be infinite; the bound then holds for every box inside it as well.
-inline double distance_at_least(const Box3d& a, const Box3d& b) {
+// Two functions find most boxes that are farther than a distance without a square root: if square_at_least(a, b) > square_at_most(d),
+// distance(a, b) > d.
+
+/// Returns the squared distance between two boxes, or a lower value. A box may be infinite; the bound then holds for each box inside it.
+inline double square_at_least(const Box3d& a, const Box3d& b) {
     const double square = rounded_square(a, b).value;
-    return RoundedSquare::within(square) ? std::sqrt(square) * (1 - 2 * RoundedSquare::error)
-                                         : extreme_distance_at_least(a, b);
+    return square < RoundedSquare::least ? 0 : std::min(square, RoundedSquare::most);
+}
+
+inline double square_at_most(double distance) {
+    constexpr double errors = 4 * RoundedSquare::error;
+    const double square = distance * distance * (1 + errors);
+    return square < RoundedSquare::most / 2 ? std::max(square, 2 * RoundedSquare::least)
+                                            : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace octopair

@@ -1,11 +1,15 @@
 #include "scene/queries/scene_queries.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
+#include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
+#include "octree/dynamic/nearest_search.hpp"
 #include "scene/queries/query_rules.hpp"
 
 namespace octopair {
@@ -31,108 +35,95 @@ void for_each_changed(const SceneQueries::View& scene, Visit&& visit) {
     }
 }
 
-/// Base of the nearest-first searches. Maps regions of the octree to the scene's coordinates.
-class SceneProbe : public NearestVisitor {
+/// Searches the objects of a scene with a visitor (NearestSearch) that has try_object(index) in place of take().
+template <typename Visitor>
+class SceneProbe {
 public:
-    explicit SceneProbe(const SceneQueries::View& scene) : scene_(scene) {}
+    SceneProbe(const SceneQueries::View& scene, Visitor& visitor) : scene_(scene), visitor_(visitor) {}
 
-    double at_least(const Box3d& region) const final {
-        // Entries are boxes minus the origin, rounded, and clamped to the range of float32. Margin and paddings only
-        // enlarge them.
-        constexpr double roundings = 0x1p-50, end = double(std::numeric_limits<float>::max()) * (1 - 0x1p-20);
-        Box3d moved;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double origin = scene_.rounding.origin[axis];
-            const double lo = origin + region.min[axis], hi = origin + region.max[axis];
-            moved.min[axis] = region.min[axis] > -end ? lo - roundings * (std::abs(origin) + std::abs(lo)) : -infinity;
-            moved.max[axis] = region.max[axis] < end ? hi + roundings * (std::abs(origin) + std::abs(hi)) : infinity;
-        }
-        return from(moved);
+    double at_least(const Box3d& region) const { return visitor_.at_least(region); }
+    double limit() const { return visitor_.limit(); }
+    void take(std::uint32_t index) {
+        if (is_unchanged(scene_, index) && is_wanted(scene_, index)) visitor_.try_object(index);
     }
-    void take(std::uint32_t index) final {
-        if (is_unchanged(scene_, index) && is_wanted(scene_, index)) try_object(index);
+    void search(const RegionMap& map) {
+        for_each_changed(scene_, [&](std::uint32_t index) { visitor_.try_object(index); });
+        NearestSearch(scene_.octree, map, *this).run();
     }
-    void search() {
-        for_each_changed(scene_, [&](std::uint32_t index) { try_object(index); });
-        scene_.octree.search(*this);
-    }
-
-protected:
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
-    const ObjectTable& table() const { return scene_.table; }
 
 private:
-    virtual double from(const Box3d& region) const = 0;
-    virtual void try_object(std::uint32_t index) = 0;
-
     const SceneQueries::View& scene_;
+    Visitor& visitor_;
 };
 
 /// Base of ray queries. A region that the ray misses has an infinite distance, which is beyond each limit here.
-class RayProbe : public SceneProbe {
+class RayProbe {
 public:
-    RayProbe(const SceneQueries::View& scene, const Ray& ray) : SceneProbe(scene), ray_(ray) {}
+    RayProbe(const SceneQueries::View& scene, const Ray& ray) : table_(scene.table), ray_(ray) {}
 
-protected:
-    const Ray& ray() const { return ray_; }
-
-private:
-    double from(const Box3d& region) const final {
+    double at_least(const Box3d& region) const {
         const auto along = hit(ray_, region);
-        if (!along) return infinity;
+        if (!along) return std::numeric_limits<double>::infinity();
         // Rounding may put the entry into a box in the region slightly before the entry into the region.
         constexpr double underflow = std::numeric_limits<double>::min();
         constexpr double roundings = 4 * std::numeric_limits<double>::epsilon();
         return std::min(*along * (1 - roundings) - underflow, std::numeric_limits<double>::max());
     }
 
+protected:
+    std::optional<double> hit_object(std::uint32_t index) const { return hit(ray_, table_.box(index)); }
+
+private:
+    const ObjectTable& table_;
     const Ray& ray_;
 };
 
-class FirstHit final : public RayProbe {
+class FirstHit : public RayProbe {
 public:
     using RayProbe::RayProbe;
     const RayHit& best() const { return best_; }
-
-private:
-    double limit() const override { return std::min(best_.along, std::numeric_limits<double>::max()); }
-    void try_object(std::uint32_t index) override {
-        const auto along = hit(ray(), table().box(index));
+    double limit() const { return std::min(best_.along, std::numeric_limits<double>::max()); }
+    void try_object(std::uint32_t index) {
+        const auto along = hit_object(index);
         if (along && (*along < best_.along || (*along == best_.along && index < best_.index))) best_ = {index, *along};
     }
 
-    RayHit best_{ObjectTable::none, infinity};
+private:
+    RayHit best_{ObjectTable::none, std::numeric_limits<double>::infinity()};
 };
 
-class AllHits final : public RayProbe {
+class AllHits : public RayProbe {
 public:
     AllHits(const SceneQueries::View& scene, const Ray& ray, std::vector<RayHit>& hits)
         : RayProbe(scene, ray), hits_(hits) {}
-
-private:
-    double limit() const override { return std::numeric_limits<double>::max(); }
-    void try_object(std::uint32_t index) override {
-        if (const auto along = hit(ray(), table().box(index))) hits_.push_back({index, *along});
+    double limit() const { return std::numeric_limits<double>::max(); }
+    void try_object(std::uint32_t index) {
+        if (const auto along = hit_object(index)) hits_.push_back({index, *along});
     }
 
+private:
     std::vector<RayHit>& hits_;
 };
 
-/// Appends the nearest objects, in order, to a list.
-class Nearest final : public SceneProbe {
+/// Appends the nearest objects, in order, to a list. Searches by squared distances.
+class Nearest {
 public:
     Nearest(const SceneQueries::View& scene, const Box3d& place, const NearestLimits& limits,
             std::vector<Neighbor>& list)
-        : SceneProbe(scene), place_(place), limits_(limits), list_(list), begin_(list.size()) {}
+        : table_(scene.table),
+          place_(place),
+          limits_(limits),
+          list_(list),
+          begin_(list.size()),
+          square_limit_(square_at_most(limits.within)) {}
 
-private:
+    double at_least(const Box3d& region) const { return square_at_least(place_, region); }
     // Rounded distances have the order of the exact ones. So an object with a larger rounded distance than the last one in
     // the list is farther. An object with an equal rounded distance may be nearer, and is compared exactly.
-    double from(const Box3d& region) const override { return distance_at_least(place_, region); }
-    double limit() const override { return is_full() ? list_.back().distance : limits_.within; }
-    void try_object(std::uint32_t index) override {
-        const Box3d box = table().box(index);
-        if (distance_at_least(place_, box) > limit()) return;
+    double limit() const { return square_limit_; }
+    void try_object(std::uint32_t index) {
+        const Box3d box = table_.box(index);
+        if (square_at_least(place_, box) > square_limit_) return;
         const Neighbor found{index, distance(place_, box)};
         if (found.distance > limits_.within) return;
         const auto at = std::lower_bound(list_.begin() + std::ptrdiff_t(begin_), list_.end(), found,
@@ -142,23 +133,70 @@ private:
         if (full && at == list_.end()) return;
         list_.insert(at, found);
         if (full) list_.pop_back();
+        if (is_full()) square_limit_ = square_at_most(list_.back().distance);
     }
 
+private:
     bool is_full() const { return list_.size() - begin_ == limits_.count; }
     bool nearer(const Neighbor& a, const Neighbor& b) const {
         if (a.distance != b.distance) return a.distance < b.distance;
         if (a.distance == 0 || a.index == b.index) return a.index < b.index;
-        const int sign = exactly_compare_distances(place_, table().box(a.index), table().box(b.index));
+        const int sign = exactly_compare_distances(place_, table_.box(a.index), table_.box(b.index));
         return sign != 0 ? sign < 0 : a.index < b.index;
     }
 
+    const ObjectTable& table_;
     const Box3d& place_;
     const NearestLimits& limits_;
     std::vector<Neighbor>& list_;
     std::size_t begin_;
+    double square_limit_;
 };
 
+/// Returns a box that contains a sphere.
+Box3d box_around(const Sphere& sphere) {
+    // More than the relative rounding error of the box.
+    constexpr double roundings = 0x1p-48;
+    constexpr double most = std::numeric_limits<double>::max();
+    Box3d around;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double centre = sphere.centre[axis];
+        const double reach = sphere.radius + roundings * (sphere.radius + std::abs(centre));
+        around.min[axis] = std::max(centre - reach, -most);
+        around.max[axis] = std::min(centre + reach, most);
+    }
+    return around;
+}
+
+/// Returns the box of the begin of a ray.
+Box3d begin_of(const Ray& ray) {
+    Box3d begin;
+    for (int axis = 0; axis < 3; ++axis) begin.min[axis] = begin.max[axis] = ray.origin[axis];
+    return begin;
+}
+
 }  // namespace
+
+/// Sets the order in which answer() answers the queries. around(i) returns a box that contains query `i`, or its begin.
+template <typename Around>
+void SceneQueries::sort_by_place(const View& scene, std::size_t queries, Around&& around) {
+    order_ = {};
+    if (scene.octree.empty() || queries < tuning().scene.min_sorted_queries ||
+        queries > std::numeric_limits<std::uint32_t>::max())
+        return;
+    count_path(Path::queries_sorted);
+    const std::span<std::uint64_t> keys = sorter_.take(queries);
+    const std::size_t share_size = tuning().scene.share_queries;
+    const auto set_keys = [&](std::size_t share, unsigned) {
+        const std::size_t end = std::min((share + 1) * share_size, queries);
+        for (std::size_t i = share * share_size; i < end; ++i) {
+            const CellBox cells = scene.octree.space().cells(scene.rounding.entry(around(i), 0));
+            keys[i] = std::uint64_t(scene.octree.unit_at(cells.lo)) << 32 | i;
+        }
+    };
+    team_.for_each((queries + share_size - 1) / share_size, std::ref(set_keys));
+    order_ = sorter_.sort(32, 32 + unsigned(std::bit_width(scene.octree.units())));
+}
 
 /// Calls find(query, worker) for each query in parallel, and joins the answers in the order of the queries. `find` appends
 /// its answers to `collected`.
@@ -171,7 +209,8 @@ void SceneQueries::answer(std::size_t queries, std::vector<Answer> Worker::*coll
     const auto find_share = [&](std::size_t share, unsigned number) {
         Worker& worker = workers_[number];
         const std::size_t end = std::min((share + 1) * share_size, queries);
-        for (std::size_t i = share * share_size; i < end; ++i) {
+        for (std::size_t at = share * share_size; at < end; ++at) {
+            const std::size_t i = order_.empty() ? at : std::uint32_t(order_[at]);
             const std::size_t begin = (worker.*collected).size();
             find(i, worker);
             parts_[i] = {number, begin, (worker.*collected).size()};
@@ -204,38 +243,34 @@ void SceneQueries::find_overlaps(const View& scene, const Box3d& around, const Q
 }
 
 void SceneQueries::overlaps(const View& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers) {
+    sort_by_place(scene, boxes.size(), [&](std::size_t i) { return boxes[i]; });
     answer(boxes.size(), &Worker::indices, answers,
            [&](std::size_t i, Worker& worker) { find_overlaps(scene, boxes[i], boxes[i], worker); });
 }
 
 void SceneQueries::overlaps(const View& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers) {
-    // More than the relative rounding error of the box around a sphere.
-    constexpr double roundings = 0x1p-48;
-    constexpr double most = std::numeric_limits<double>::max();
-    answer(spheres.size(), &Worker::indices, answers, [&](std::size_t i, Worker& worker) {
-        Box3d around;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double centre = spheres[i].centre[axis];
-            const double reach = spheres[i].radius + roundings * (spheres[i].radius + std::abs(centre));
-            around.min[axis] = std::max(centre - reach, -most);
-            around.max[axis] = std::min(centre + reach, most);
-        }
-        find_overlaps(scene, around, spheres[i], worker);
-    });
+    sort_by_place(scene, spheres.size(), [&](std::size_t i) { return box_around(spheres[i]); });
+    answer(spheres.size(), &Worker::indices, answers,
+           [&](std::size_t i, Worker& worker) { find_overlaps(scene, box_around(spheres[i]), spheres[i], worker); });
 }
 
 void SceneQueries::first_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
+    const RegionMap map(scene.octree.space(), scene.rounding.origin);
+    sort_by_place(scene, rays.size(), [&](std::size_t i) { return begin_of(rays[i]); });
     answer(rays.size(), &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         FirstHit first(scene, rays[i]);
-        first.search();
+        SceneProbe(scene, first).search(map);
         if (first.best().index != ObjectTable::none) worker.hits.push_back(first.best());
     });
 }
 
 void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
+    const RegionMap map(scene.octree.space(), scene.rounding.origin);
+    sort_by_place(scene, rays.size(), [&](std::size_t i) { return begin_of(rays[i]); });
     answer(rays.size(), &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         const auto begin = std::ptrdiff_t(worker.hits.size());
-        AllHits(scene, rays[i], worker.hits).search();
+        AllHits all(scene, rays[i], worker.hits);
+        SceneProbe(scene, all).search(map);
         std::sort(worker.hits.begin() + begin, worker.hits.end(), [](const RayHit& a, const RayHit& b) {
             return a.along != b.along ? a.along < b.along : a.index < b.index;
         });
@@ -245,8 +280,12 @@ void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answer
 
 void SceneQueries::nearest(const View& scene, std::span<const Box3d> places, const NearestLimits& limits,
                            Answers<Neighbor>& answers) {
+    const RegionMap map(scene.octree.space(), scene.rounding.origin);
+    sort_by_place(scene, places.size(), [&](std::size_t i) { return places[i]; });
     answer(places.size(), &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
-        if (limits.count > 0) Nearest(scene, places[i], limits, worker.neighbors).search();
+        if (limits.count == 0) return;
+        Nearest nearest(scene, places[i], limits, worker.neighbors);
+        SceneProbe(scene, nearest).search(map);
     });
 }
 

@@ -3,6 +3,7 @@
 //
 // Invariants
 //   The octree yields candidates. The boxes in the object table decide.
+//   Many queries are answered in the order of the units in which they begin, so that queries that follow each other read the same memory.
 //   Objects that changed after the octree was brought up to date are ignored in it. Each query tests them one by one.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/radix_sort.hpp"
 #include "boxes/outward_rounding.hpp"
 #include "octopair/queries.hpp"
 #include "octree/dynamic/mutable_octree.hpp"
@@ -53,6 +55,8 @@ private:
         std::size_t begin, end;
     };
 
+    template <typename Around>
+    void sort_by_place(const View& scene, std::size_t queries, Around&& around);
     template <typename Answer, typename Find>
     void answer(std::size_t queries, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
     template <typename Query>
@@ -61,6 +65,9 @@ private:
     Team& team_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
+    /// Order in which queries are answered: the query is in the low 32 bits. Empty: the order of the queries.
+    RadixSort<std::uint64_t> sorter_;
+    std::span<const std::uint64_t> order_;
 };
 
 }  // namespace octopair
