@@ -13,7 +13,8 @@ import bs4
 
 LOADED = {"script": "src", "img": "src", "link": "href", "iframe": "src", "source": "src", "object": "data", "video": "src", "audio": "src"}
 ADDRESS = re.compile(r"^(?:https?:)?//")
-IN_CSS = re.compile(r"""(?:url\(\s*|@import\s+)["']?((?:https?:)?//[^"')]+)""")
+# An address of another site, or a path of the file system.
+IN_CSS = re.compile(r"""(?:url\(\s*|@import\s+)["']?((?:https?:/|file:/)?/[^"')]+)""")
 
 
 @functools.lru_cache(maxsize=None)

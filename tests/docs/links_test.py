@@ -44,7 +44,9 @@ class Faults(unittest.TestCase):
                 self.assertIn(message, done.stdout)
 
     def test_style_sheet(self):
-        self.assertIn("style.css: loads", run(RIGHT, '@import "https://example.org/font.css";').stdout)
+        for address in ("https://example.org/font.css", "/javascript/normalize.css", "file:///usr/share/normalize.css"):
+            self.assertIn(f"style.css: loads {address}", run(RIGHT, f'@import "{address}";').stdout)
+        self.assertEqual(run(RIGHT, "p { background: url(code.js) }").returncode, 0)
 
 
 if __name__ == "__main__":
