@@ -1,11 +1,16 @@
-"""A CollisionManager with the methods and return values of trimesh.collision, which needs neither trimesh nor python-fcl.
+"""The classes and functions of trimesh.collision, without trimesh and python-fcl.
 
 Meshes are any objects with ``vertices`` and ``faces``.
 
-What differs: meshes are solid where they are closed, so an object within another collides with it. Distances are exact, also far away.
-Where objects penetrate, a distance is negative; its size is the depth that :func:`octopair.collide` reports, the shortest translation
-that is known to be necessary to separate them. Equal objects in one place have the depth 0. An object that lies within another has no
-contacts.
+What differs:
+
+- Meshes are solid where they are closed, so an object within another collides with it.
+- All contacts of all pairs are returned. There is no maximum.
+- Distances are exact, also far away. Where objects penetrate, a distance is negative; its size is the depth that
+  :func:`octopair.collide` reports: a lower bound on the shortest translation that separates them.
+- An object that lies within another has no contacts. Equal objects in one place have none either, and the depth 0.
+- :func:`mesh_to_BVH` and :func:`mesh_to_convex` return a :class:`PreparedMesh` instead of objects of FCL. There are no other objects of
+  FCL: ``CollisionManager.add_object`` returns nothing, and the second value of :func:`scene_to_collision` has a ``Geometry`` per node.
 
 >>> import numpy as np
 >>> from octopair.trimesh import CollisionManager
@@ -21,48 +26,88 @@ contacts.
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
 
 from . import _arrays
 from ._arrays import Array
 from ._engine import Engine
-from ._errors import InputError, InputTypeError
+from ._errors import InputError, InputTypeError, UsageError
 from ._pipeline import Pipeline, collide
 from ._results import Collisions
 from ._scene import Scene
-from ._shapes import Geometry, Shapes
+from ._shapes import Geometry, Shapes, face_array
 
-__all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
+__all__ = ["CollisionManager", "ContactData", "DistanceData", "PreparedMesh", "mesh_to_BVH", "mesh_to_convex", "scene_to_collision"]
 
 EXTERNAL = "__external"
 """Name of the mesh in the data of ``in_collision_single`` and ``min_distance_single``."""
 
+ALL_CONTACTS = 0xFFFFFFFF
+"""Value of ``max_contacts`` that leaves out no contact."""
+
+NO_FACE = 0xFFFFFFFF
+"""Value in ``contact_features`` of a shape without triangles."""
+
+
+class PreparedMesh(NamedTuple):
+    """A mesh that is prepared for exact tests. A CollisionManager takes it in place of the mesh, and shares it among objects."""
+
+    geometry: Geometry
+    vertices: Array
+    faces: Array
+
+
+class _Object(NamedTuple):
+    mesh: PreparedMesh
+    transform: Array
+
+
+class _Place(NamedTuple):
+    """A point of an object, and the triangle that has the point, or NO_FACE."""
+
+    item: _Object
+    point: Array
+    triangle: int
+
+    def face(self) -> int:
+        return self.triangle if self.triangle != NO_FACE else _nearest_face(self.item, self.point)
+
 
 class ContactData:
-    """A contact of two objects.
+    """A contact of two objects."""
 
-    Attributes
-    ----------
-    names : set of str
-        Names of the objects.
-    point, normal : numpy.ndarray
-        Contact point, and unit vector from the first object to the second, shape (3,).
-    depth : float
-        Penetration depth.
-    """
+    __slots__ = ("_contact", "_objects", "_table")
 
-    def __init__(self, names: Tuple[str, str], table: Collisions, contact: int) -> None:
-        self.names = set(names)
-        self.point = table.contact_points[contact]
-        self.normal = table.contact_normals[contact]
-        self.depth = float(table.contact_depths[contact])
-        self._indices = dict(zip(names, map(int, table.contact_features[contact])))
+    def __init__(self, objects: Dict[str, _Object], table: Collisions, contact: int) -> None:
+        self._objects, self._table, self._contact = objects, table, contact
+
+    @property
+    def names(self) -> Set[str]:
+        """Names of the objects."""
+        return set(self._objects)
+
+    @property
+    def point(self) -> Array:
+        """Contact point, shape (3,)."""
+        return self._table.contact_points[self._contact]
+
+    @property
+    def normal(self) -> Array:
+        """Unit vector from the first object to the second, shape (3,)."""
+        return self._table.contact_normals[self._contact]
+
+    @property
+    def depth(self) -> float:
+        """Penetration depth."""
+        return float(self._table.contact_depths[self._contact])
 
     def index(self, name: str) -> int:
-        """Returns the index of the face of this object."""
-        return self._indices[name]
+        """Returns the index of the face of this object. If both objects have this name: of the second one."""
+        item = self._objects[name]
+        column = int(name == list(self._objects)[-1])
+        return _Place(item, self.point, int(self._table.contact_features[self._contact, column])).face()
 
 
 class DistanceData:
@@ -76,27 +121,32 @@ class DistanceData:
         Negative where the objects penetrate.
     """
 
-    def __init__(self, names: Tuple[str, str], distance: float, points: Array) -> None:
-        self.names = set(names)
+    def __init__(self, places: Dict[str, _Place], distance: float) -> None:
+        self._places = places
+        self.names = set(places)
         self.distance = distance
-        self._points = dict(zip(names, points))
 
     def point(self, name: str) -> Array:
-        """Returns the point of this object that is nearest to the other; for objects that meet, a contact point."""
-        return self._points[name]
+        """Returns the point of this object that is nearest to the other. For objects that meet, this is a contact point; its
+        coordinates are NaN if they have no contact."""
+        return self._places[name].point
 
-
-class _Object(NamedTuple):
-    geometry: Geometry
-    transform: Array
+    def index(self, name: str) -> int:
+        """Returns the index of the face of this object that has the point. Of several such faces, any. Raises a ValueError for objects
+        that meet without a contact."""
+        place = self._places[name]
+        if np.isnan(place.point).any():
+            raise UsageError(f"index: {' and '.join(sorted(self.names))} have no contact: an object lies within the other, or both are equal")
+        return place.face()
 
 
 class _Nearest(NamedTuple):
-    """Smallest distance of two sets: indices of the pair and their nearest points; None without a pair."""
+    """Smallest distance of two sets: indices of the pair, or None without a pair; the nearest points and their triangles."""
 
     distance: float
     pair: Optional[Tuple[int, int]]
     points: Array
+    triangles: Tuple[int, int]
 
 
 def _matrix(transform: Any) -> Array:
@@ -114,12 +164,32 @@ def _manager(other: Any) -> "CollisionManager":
     return other
 
 
-def _geometry(mesh: Any) -> Geometry:
+def _prepared(mesh: Any, convex: bool = False) -> PreparedMesh:
+    if isinstance(mesh, PreparedMesh) and not convex:
+        return mesh
     if not hasattr(mesh, "vertices") or not hasattr(mesh, "faces"):
         raise InputTypeError(f"mesh: a {type(mesh).__name__} has not both vertices and faces")
     if len(mesh.faces) == 0:
         raise InputError("mesh: it has no faces")
-    return Geometry.mesh(mesh.vertices, mesh.faces)
+    vertices = np.array(_arrays.numbers(mesh.vertices, "vertices", (None, 3), copy=True), dtype=np.float64)
+    faces = np.array(face_array(mesh.faces))
+    for array in (vertices, faces):
+        array.flags.writeable = False
+    checked = Geometry.mesh(vertices, faces)
+    return PreparedMesh(Geometry.hull(vertices) if convex else checked, vertices, faces)
+
+
+def mesh_to_BVH(mesh: Any) -> PreparedMesh:
+    """Returns a mesh that is prepared for exact tests. Requires: `mesh` has ``vertices`` (n, 3) and ``faces`` (m, 3)."""
+    return _prepared(mesh)
+
+
+def mesh_to_convex(mesh: Any) -> PreparedMesh:
+    """Returns the convex hull of a mesh, prepared for exact tests, which are faster than those of a mesh.
+
+    An index of a face is that of the mesh. Requires: `mesh` has ``vertices`` (n, 3) and ``faces`` (m, 3).
+    """
+    return _prepared(mesh, convex=True)
 
 
 class CollisionManager:
@@ -127,6 +197,7 @@ class CollisionManager:
 
     def __init__(self) -> None:
         self._objects: Dict[str, _Object] = {}
+        self._ignored: Set[Tuple[str, str]] = set()
         self._engine = Engine("local")
         self._shapes: Optional[Shapes] = None
 
@@ -138,23 +209,45 @@ class CollisionManager:
         name : str
             Name.
         mesh : object
-            With ``vertices`` (n, 3) and ``faces`` (m, 3).
+            A PreparedMesh, or an object with ``vertices`` (n, 3) and ``faces`` (m, 3).
         transform : array, shape (4, 4), optional
             Homogeneous matrix. Default: identity.
         """
-        self._objects[_arrays.text(name, "name")] = _Object(_geometry(mesh), _matrix(transform))
+        self._objects[_arrays.text(name, "name")] = _Object(_prepared(mesh), _matrix(transform))
         self._shapes = None
 
     def remove_object(self, name: str) -> None:
-        """Removes an object. Raises a ValueError if there is none of this name."""
+        """Removes an object and its ignored pairs. Raises a ValueError if there is none of this name."""
         self._object(name)
         del self._objects[name]
+        self._ignored = {pair for pair in self._ignored if name not in pair}
         self._shapes = None
 
     def set_transform(self, name: str, transform: Any) -> None:
         """Places an object. Raises a ValueError if there is none of this name."""
         self._objects[name] = self._object(name)._replace(transform=_matrix(transform))
         self._shapes = None
+
+    def set_pair_ignored(self, name_a: str, name_b: str, ignored: bool = True) -> None:
+        """Sets whether :meth:`in_collision_internal` leaves out this pair. Raises a ValueError if there is no such pair."""
+        self._object(name_a)
+        self._object(name_b)
+        if name_a == name_b:
+            raise InputError(f"a pair has two objects; both names are {name_a}")
+        (self._ignored.add if ignored else self._ignored.discard)(_sorted(name_a, name_b))
+
+    def is_pair_ignored(self, name_a: str, name_b: str) -> bool:
+        """Returns whether :meth:`in_collision_internal` leaves out this pair."""
+        return _sorted(name_a, name_b) in self._ignored
+
+    def clear_ignored_pairs(self) -> None:
+        """Ignores no pair."""
+        self._ignored.clear()
+
+    @property
+    def ignored_pairs(self) -> Set[Tuple[str, str]]:
+        """Pairs that :meth:`in_collision_internal` leaves out; the names of a pair are sorted."""
+        return set(self._ignored)
 
     def in_collision_single(self, mesh: Any, transform: Any = None, return_names: bool = False, return_data: bool = False) -> Any:
         """Checks a mesh against all objects.
@@ -166,13 +259,14 @@ class CollisionManager:
         names : set of str
             With `return_names`: objects that collide with the mesh.
         contacts : list of ContactData
-            With `return_data`. The name of the mesh is ``"__external"``.
+            With `return_data`: all contacts. The name of the mesh is ``"__external"``.
         """
-        table = self._collide(_single(mesh, transform), return_data)
+        single = _single(mesh, transform)
+        table = self._collide(_shapes([single]), return_data)
         names = list(self._objects)
         found = {names[a] for a in table.a}
-        contacts = _contacts(table, names, [EXTERNAL]) if return_data else []
-        return _answer(len(table) > 0, (return_names, found), (return_data, contacts))
+        contacts = _contacts(table, self._objects, {EXTERNAL: single}) if return_data else []
+        return _answer(len(table.pairs) > 0, (return_names, found), (return_data, contacts))
 
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Checks the objects against each other.
@@ -184,13 +278,13 @@ class CollisionManager:
         names : set of (str, str)
             With `return_names`: pairs that collide; the names of a pair are sorted.
         contacts : list of ContactData
-            With `return_data`.
+            With `return_data`: all contacts.
         """
         table = self._collide(None, return_data)
         names = list(self._objects)
         found = {_sorted(names[a], names[b]) for a, b in table.pairs}
-        contacts = _contacts(table, names, names) if return_data else []
-        return _answer(len(table) > 0, (return_names, found), (return_data, contacts))
+        contacts = _contacts(table, self._objects, self._objects) if return_data else []
+        return _answer(len(table.pairs) > 0, (return_names, found), (return_data, contacts))
 
     def in_collision_other(self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False) -> Any:
         """Checks the objects against those of another manager.
@@ -202,13 +296,13 @@ class CollisionManager:
         names : set of (str, str)
             With `return_names`: pairs of a name of this manager and a name of the other.
         contacts : list of ContactData
-            With `return_data`.
+            With `return_data`: all contacts.
         """
         table = self._collide(_manager(other_manager)._all(), return_data)
         names, others = list(self._objects), list(other_manager._objects)
         found = {(names[a], others[b]) for a, b in table.pairs}
-        contacts = _contacts(table, names, others) if return_data else []
-        return _answer(len(table) > 0, (return_names, found), (return_data, contacts))
+        contacts = _contacts(table, self._objects, other_manager._objects) if return_data else []
+        return _answer(len(table.pairs) > 0, (return_names, found), (return_data, contacts))
 
     def min_distance_single(self, mesh: Any, transform: Any = None, return_name: bool = False, return_data: bool = False) -> Any:
         """Returns the smallest distance between a mesh and all objects; infinite if there are none.
@@ -222,9 +316,10 @@ class CollisionManager:
         data : DistanceData
             With `return_data`, or None. The name of the mesh is ``"__external"``.
         """
-        nearest = self._nearest(self._all(), _single(mesh, transform))
-        names = None if nearest.pair is None else (list(self._objects)[nearest.pair[0]], EXTERNAL)
-        return _distance_answer(nearest, names, (return_name, None if names is None else names[0]), return_data)
+        single = _single(mesh, transform)
+        nearest = self._nearest(self._all(), _shapes([single]))
+        pair = _named(nearest, self._objects, {EXTERNAL: single})
+        return _distance_answer(nearest, pair, (return_name, None if pair is None else pair[0][0]), return_data)
 
     def min_distance_internal(self, name: Optional[str] = None, return_names: bool = False, return_data: bool = False) -> Any:
         """Returns the smallest distance between two objects; infinite if there are fewer.
@@ -247,14 +342,14 @@ class CollisionManager:
         """
         if name is None:
             nearest = self._nearest(self._all(), None)
-            names = list(self._objects)
-            pair = None if nearest.pair is None else (names[nearest.pair[0]], names[nearest.pair[1]])
+            pair = _named(nearest, self._objects, self._objects)
         else:
-            own = self._object(name)
-            others = [other for other in self._objects if other != name]
-            nearest = self._nearest(_shapes([self._objects[other] for other in others]), _shapes([own]))
-            pair = None if nearest.pair is None else (others[nearest.pair[0]], name)
-        return _distance_answer(nearest, pair, (return_names, None if pair is None else _sorted(*pair)), return_data)
+            own = {name: self._object(name)}
+            others = {other: item for other, item in self._objects.items() if other != name}
+            nearest = self._nearest(_shapes(others.values()), _shapes(own.values()))
+            pair = _named(nearest, others, own)
+        names = None if pair is None else _sorted(pair[0][0], pair[1][0])
+        return _distance_answer(nearest, pair, (return_names, names), return_data)
 
     def min_distance_other(self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False) -> Any:
         """Returns the smallest distance between the objects and those of another manager; infinite if one has none.
@@ -269,10 +364,9 @@ class CollisionManager:
             With `return_data`, or None.
         """
         nearest = self._nearest(self._all(), _manager(other_manager)._all())
-        pair = None
-        if nearest.pair is not None:
-            pair = (list(self._objects)[nearest.pair[0]], list(other_manager._objects)[nearest.pair[1]])
-        return _distance_answer(nearest, pair, (return_names, pair), return_data)
+        pair = _named(nearest, self._objects, other_manager._objects)
+        names = None if pair is None else (pair[0][0], pair[1][0])
+        return _distance_answer(nearest, pair, (return_names, names), return_data)
 
     def __repr__(self) -> str:
         return f"CollisionManager({len(self._objects):,} objects)"
@@ -284,11 +378,20 @@ class CollisionManager:
 
     def _all(self) -> Shapes:
         if self._shapes is None:
-            self._shapes = _shapes(list(self._objects.values()))
+            self._shapes = _shapes(self._objects.values())
         return self._shapes
 
     def _collide(self, other: Optional[Shapes], contacts: bool) -> Collisions:
-        return collide(self._all(), other, stage="features" if contacts else "objects", engine=self._engine)
+        keep = self._is_not_ignored if other is None and self._ignored else None
+        return collide(self._all(), against=other, stage="features" if contacts else "objects", max_contacts=ALL_CONTACTS, keep=keep,
+                       engine=self._engine)
+
+    def _is_not_ignored(self, table: Collisions) -> Array:
+        """Returns a mask of pairs of the objects."""
+        index = {name: number for number, name in enumerate(self._objects)}
+        ignored = np.sort([(index[a], index[b]) for a, b in self._ignored], axis=1)
+        numbers = np.array([len(index), 1])  # of each pair, one number
+        return np.isin(table.pairs @ numbers, ignored @ numbers, invert=True)
 
     def _nearest(self, first: Shapes, second: Optional[Shapes]) -> _Nearest:
         """Returns the smallest distance within a set, or between two sets.
@@ -298,34 +401,40 @@ class CollisionManager:
         """
         size = len(first) if second is None else len(second)
         if len(first) == 0 or size < (2 if second is None else 1):
-            return _Nearest(np.inf, None, np.zeros((2, 3)))
-        meeting = collide(first, second, max_contacts=1, engine=self._engine)
-        if len(meeting):
-            deepest = int(np.argmax(meeting.depth))
-            contacts = meeting.contact_points[meeting.contacts(deepest)]
-            points = np.repeat(contacts, 2, axis=0) if len(contacts) else np.full((2, 3), np.nan)
-            return _Nearest(-float(meeting.depth[deepest]) + 0.0, _pair(meeting, deepest), points)
-        table = self._within(first, second, _suggested_distance(first, second))
+            return _Nearest(np.inf, None, np.zeros((2, 3)), (NO_FACE, NO_FACE))
+        meeting = collide(first, against=second, max_contacts=1, engine=self._engine)
+        if len(meeting.pairs):
+            return _deepest(meeting)
+        margin = _suggested_distance(first, second)
+        table = collide(first, against=second, margin=margin, stage="objects", engine=self._engine)
         best = int(np.argmin(table.distance))
-        return _Nearest(float(table.distance[best]), _pair(table, best), table.nearest[best])
-
-    def _within(self, first: Shapes, second: Optional[Shapes], margin: float) -> Collisions:
-        """Returns the pairs whose distance is at most `margin`, with their distances."""
-        return collide(first, second, margin=margin, stage="objects", engine=self._engine)
+        return _Nearest(float(table.distance[best]), _pair(table, best), table.nearest[best], (NO_FACE, NO_FACE))
 
 
-def _shapes(objects: List[_Object]) -> Shapes:
-    poses = np.array([item.transform for item in objects]).reshape(-1, 4, 4)
-    return Shapes([item.geometry for item in objects], poses)
+def _deepest(meeting: Collisions) -> _Nearest:
+    """Returns the deepest pair of objects that meet, with its contact, if it has one."""
+    row = int(np.argmax(meeting.depth))
+    points, triangles = np.full((2, 3), np.nan), (NO_FACE, NO_FACE)
+    contacts = meeting.contacts(row)
+    if contacts.start < contacts.stop:
+        points = np.repeat(meeting.contact_points[contacts.start:contacts.start + 1], 2, axis=0)
+        a, b = meeting.contact_features[contacts.start].tolist()
+        triangles = a, b
+    return _Nearest(-float(meeting.depth[row]) + 0.0, _pair(meeting, row), points, triangles)
 
 
-def _single(mesh: Any, transform: Any) -> Shapes:
-    return _shapes([_Object(_geometry(mesh), _matrix(transform))])
+def _shapes(objects: Iterable[_Object]) -> Shapes:
+    items = list(objects)
+    return Shapes([item.mesh.geometry for item in items], np.array([item.transform for item in items]).reshape(-1, 4, 4))
+
+
+def _single(mesh: Any, transform: Any) -> _Object:
+    return _Object(_prepared(mesh), _matrix(transform))
 
 
 def _suggested_distance(first: Shapes, second: Optional[Shapes]) -> float:
     """Returns the distance of the objects whose boxes are nearest, or slightly more. Requires: no objects meet."""
-    boxes = first.boxes(second)
+    boxes = first.boxes(against=second)
     here, there = (boxes, boxes) if second is None else boxes
     scene = Scene(dtype="float64")
     scene.add(there)
@@ -338,8 +447,8 @@ def _suggested_distance(first: Shapes, second: Optional[Shapes]) -> float:
     pair = np.vstack([here[a], there[b]])
     farthest = float(np.linalg.norm(pair[:, 3:].max(axis=0) - pair[:, :3].min(axis=0)))
     one, other = _subset(first, a), _subset(first if second is None else second, b)
-    here_box, there_box = one.boxes(other)
-    table = Pipeline().exact_objects(one, farthest, other).run(here_box, there_box, farthest)
+    here_box, there_box = one.boxes(against=other)
+    table = Pipeline().exact_objects(one, margin=farthest, against=other).run(here_box, against=there_box, margin=farthest)
     return float(np.nextafter(table.distance[0], np.inf))
 
 
@@ -355,11 +464,40 @@ def _sorted(a: str, b: str) -> Tuple[str, str]:
     return (a, b) if a <= b else (b, a)
 
 
-def _contacts(table: Collisions, names: List[str], others: List[str]) -> List[ContactData]:
+def _nearest_face(item: _Object, point: Array) -> int:
+    """Returns the index of the face of an object that is nearest to a point."""
+    transform = item.transform
+    vertices = item.mesh.vertices @ transform[:3, :3].T + transform[:3, 3]
+    corners = vertices[item.mesh.faces] - point
+    sides = np.roll(corners, -1, axis=1) - corners
+    lengths = np.sum(sides * sides, axis=2)
+    along = np.clip(-np.sum(corners * sides, axis=2) / np.where(lengths > 0, lengths, 1), 0, 1)
+    to_sides = np.linalg.norm(corners + along[:, :, None] * sides, axis=2).min(axis=1)
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    areas = np.linalg.norm(normals, axis=1)
+    inside = (np.sum(np.cross(corners, sides) * normals[:, None], axis=2) >= 0).all(axis=1) & (areas > 0)
+    to_planes = np.abs(np.sum(corners[:, 0] * normals, axis=1)) / np.where(areas > 0, areas, 1)
+    return int(np.argmin(np.where(inside, to_planes, to_sides)))
+
+
+_Pair = Tuple[Tuple[str, _Place], Tuple[str, _Place]]
+"""Names of two objects, and a place of each."""
+
+
+def _named(nearest: _Nearest, first: Dict[str, _Object], second: Dict[str, _Object]) -> Optional[_Pair]:
+    """Returns the nearest places of two objects."""
+    if nearest.pair is None:
+        return None
+    (name_a, item_a), (name_b, item_b) = list(first.items())[nearest.pair[0]], list(second.items())[nearest.pair[1]]
+    a, b = nearest.triangles
+    return (name_a, _Place(item_a, nearest.points[0], a)), (name_b, _Place(item_b, nearest.points[1], b))
+
+
+def _contacts(table: Collisions, first: Dict[str, _Object], second: Dict[str, _Object]) -> List[ContactData]:
+    objects, others = list(first.items()), list(second.items())
     found = []
-    for row in range(len(table)):
-        pair = (names[table.a[row]], others[table.b[row]])
-        contacts = table.contacts(row)
+    for row, (a, b) in enumerate(table.pairs.tolist()):
+        pair, contacts = dict((objects[a], others[b])), table.contacts(row)
         found += [ContactData(pair, table, contact) for contact in range(contacts.start, contacts.stop)]
     return found
 
@@ -370,16 +508,22 @@ def _answer(first: Any, *more: Tuple[bool, Any]) -> Any:
     return (first, *wanted) if wanted else first
 
 
-def _distance_answer(nearest: _Nearest, names: Optional[Tuple[str, str]], name: Tuple[bool, Any], return_data: bool) -> Any:
-    data = None if names is None else DistanceData(names, nearest.distance, nearest.points)
+def _distance_answer(nearest: _Nearest, pair: Optional[_Pair], name: Tuple[bool, Any], return_data: bool) -> Any:
+    data = None if pair is None else DistanceData(dict(pair), nearest.distance)
     return _answer(nearest.distance, name, (return_data, data))
 
 
 def scene_to_collision(scene: Any) -> Tuple[CollisionManager, Dict[str, Geometry]]:
-    """Returns a manager with the objects of a trimesh scene by the names of its nodes, and the geometry of each node."""
+    """Returns a manager with the objects of a trimesh scene by the names of its nodes, and the geometry of each node.
+
+    Nodes of a geometry without faces (a path, a point cloud) are left out.
+    """
+    if not hasattr(scene, "graph") or not hasattr(scene, "geometry"):
+        raise InputTypeError(f"scene: a {type(scene).__name__} has not both graph and geometry")
+    meshes = {name: mesh_to_BVH(mesh) for name, mesh in scene.geometry.items() if hasattr(mesh, "faces")}
     manager = CollisionManager()
-    shapes = Shapes.from_trimesh(scene)
-    bottom = np.array([[0.0, 0.0, 0.0, 1.0]])
-    for index, name in enumerate(shapes.names or []):
-        manager._objects[name] = _Object(shapes.geometries[shapes.geometry[index]], np.vstack([shapes.poses[index], bottom]))
-    return manager, {name: item.geometry for name, item in manager._objects.items()}
+    for node in scene.graph.nodes_geometry:
+        transform, name = scene.graph[node]
+        if name in meshes:
+            manager.add_object(str(node), meshes[name], transform)
+    return manager, {name: item.mesh.geometry for name, item in manager._objects.items()}
