@@ -7,13 +7,6 @@
 
 namespace octopair {
 
-namespace {
-
-// A SmallBox has 8-bit numbers: 0 means before the unit (SmallBox::class_bits()), 255 covers rounding.
-constexpr float small_numbers = 254;
-
-}  // namespace
-
 SmallBox Unit::small(const CellBox& box) const {
     std::array<float, 4> low, high;  // the last number is unused
     for (unsigned axis = 0; axis < 4; ++axis) {
@@ -22,7 +15,7 @@ SmallBox Unit::small(const CellBox& box) const {
         };
         const float begin = number(box.lo[axis]), end = number(box.hi[axis]);
         low[axis] = begin > 0.0f ? begin : 0.0f;
-        high[axis] = end < small_numbers + 1 ? end : small_numbers + 1;
+        high[axis] = std::min(end, float(last_number + 1));
     }
     SmallBox small;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -34,7 +27,7 @@ SmallBox Unit::small(const CellBox& box) const {
 /// Returns the scale (numbers of a SmallBox for each cell) of a unit that has 2^side cells of the space on an axis.
 float LeafGrid::scale_of(unsigned side) {
     constexpr unsigned exponent_zero = 127, fraction_bits = 23;
-    return small_numbers * std::bit_cast<float>((exponent_zero - side) << fraction_bits);
+    return float(Unit::last_number) * std::bit_cast<float>((exponent_zero - side) << fraction_bits);
 }
 
 /// Halves the cells of the grid repeatedly, each time on the axis on which cells are longest in units of the mean box extent. Stops when

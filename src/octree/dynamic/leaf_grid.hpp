@@ -20,6 +20,9 @@ namespace octopair {
 
 /// A region of the space that keeps entries: an octant or a cell of its grid.
 struct Unit {
+    /// Largest number of a SmallBox for a place in the unit. Numbers are 1 to `last_number`, 0 before the unit, one more after it.
+    static constexpr int last_number = 254;
+
     Cell lo = {};                     ///< first cell of the space
     std::array<float, 4> scale = {};  ///< numbers of a SmallBox for each cell of the space
     std::uint32_t index = 0;
@@ -29,16 +32,12 @@ struct Unit {
     CellRegion region(const SmallBox& box) const {
         CellRegion region;
         for (unsigned axis = 0; axis < 3; ++axis) {
-            // The first and the last number of an end stand for everything before and after the unit.
             const double cells = 1 / double(scale[axis]), first = double(lo[axis]);
             region.lo[axis] = first + double(std::max(1, int(box.lo(axis))) - 1) * cells;
             region.hi[axis] = first + double(std::min(last_number, int(box.hi(axis)))) * cells;
         }
         return region;
     }
-
-private:
-    static constexpr int last_number = 254;
 };
 
 /// A block of a grid's cells, both ends included.

@@ -3,7 +3,6 @@
 #include <hwy/cache_control.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "base/stop.hpp"
 #include "base/test_hooks.hpp"

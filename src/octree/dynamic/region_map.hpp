@@ -1,8 +1,9 @@
 // RegionMap: maps regions of the octree's cells to boxes of coordinates, for searches by distance.
 //
 // Invariants
-//   The box of a region contains every coordinate whose cell is in the region, and whose coordinate was rounded to float32.
-//   It is infinite at the border of the space, because outer coordinates are in border cells.
+//   The box of a region contains each coordinate of the scene that the octree puts into a cell of the region. Slack covers the
+//   roundings: of coordinates to float32 and to cells, and of this map.
+//   The box is infinite at the border of the space, because border cells also hold all coordinates outside the space.
 #pragma once
 
 #include <algorithm>

@@ -18,15 +18,14 @@ Gaps gaps_between(const Box3d& a, const Box3d& b) {
     return {gap_between(a, b, 0), gap_between(a, b, 1), gap_between(a, b, 2)};
 }
 
-/// Returns the square root of the sum of squares, times `factor`. The squares may be beyond the range of float64.
-double scaled_length(const std::array<double, 3>& gaps, double factor) {
+/// Returns the square root of the sum of squares. The squares may be beyond the range of float64.
+double scaled_length(const std::array<double, 3>& gaps) {
     const double largest = std::max({gaps[0], gaps[1], gaps[2]});
     if (std::isinf(largest)) return largest;
     const double scale = largest > 1 ? 0x1p-600 : 0x1p600, back = largest > 1 ? 0x1p600 : 0x1p-600;
     double sum = 0;
     for (const double gap : gaps) sum += (gap * scale) * (gap * scale);
-    // A subnormal result is rounded in the last multiplication, so that a smaller factor never gives a larger result.
-    return std::sqrt(sum) * factor * back;
+    return std::sqrt(sum) * back;
 }
 
 /// An unevaluated sum of two float64. `tail` is the rounding error of `head`.
@@ -104,7 +103,7 @@ double distance(const Box3d& a, const Box3d& b) {
     const double largest = std::max({rounded[0], rounded[1], rounded[2]});
     // If there is a gap on one axis only, its rounded difference is the rounded distance.
     if (std::count(rounded.begin(), rounded.end(), 0.0) >= 2) return largest;
-    if (!(largest >= 0x1p-400 && largest <= 0x1p500)) return nearest_root(gaps, scaled_length(rounded, 1));
+    if (!(largest >= 0x1p-400 && largest <= 0x1p500)) return nearest_root(gaps, scaled_length(rounded));
     const Bounds bounds = careful_distance(gaps);
     return bounds.low == bounds.high ? bounds.low : nearest_root(gaps, bounds.low);
 }

@@ -65,8 +65,8 @@ private:
     Team& team_;
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
-    /// Order in which queries are answered: the query is in the low 32 bits. Empty: the order of the queries.
     RadixSort<std::uint64_t> sorter_;
+    /// Order in which answer() answers the queries; each element has the number of a query in its low 32 bits. Empty: in their own order.
     std::span<const std::uint64_t> order_;
 };
 
