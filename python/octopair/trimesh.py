@@ -5,7 +5,7 @@ Meshes are any objects with ``vertices`` and ``faces``.
 What differs:
 
 - Meshes are solid where they are closed, so an object within another collides with it.
-- All contacts of all pairs are returned. There is no maximum.
+- All contacts of all pairs are returned. There is no maximum. Two convex hulls (:func:`mesh_to_convex`) have one contact.
 - Distances are exact, also far away. Where objects penetrate, a distance is negative; its size is the depth that
   :func:`octopair.collide` reports: a lower bound on the shortest translation that separates them.
 - An object that lies within another has no contacts. Equal objects in one place have none either, and the depth 0.
@@ -26,7 +26,7 @@ What differs:
 
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
+from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
 
@@ -76,7 +76,7 @@ class _Place(NamedTuple):
 
 
 class ContactData:
-    """A contact of two objects."""
+    """A contact of two objects. If both have the same name, in two managers, the data of a name is that of the second object."""
 
     __slots__ = ("_contact", "_objects", "_table")
 
@@ -104,14 +104,14 @@ class ContactData:
         return float(self._table.contact_depths[self._contact])
 
     def index(self, name: str) -> int:
-        """Returns the index of the face of this object. If both objects have this name: of the second one."""
+        """Returns the index of the face of this object."""
         item = self._objects[name]
         column = int(name == list(self._objects)[-1])
         return _Place(item, self.point, int(self._table.contact_features[self._contact, column])).face()
 
 
 class DistanceData:
-    """The distance of two objects.
+    """The distance of two objects. If both have the same name, in two managers, the data of a name is that of the second object.
 
     Attributes
     ----------
@@ -164,8 +164,9 @@ def _manager(other: Any) -> "CollisionManager":
     return other
 
 
-def _prepared(mesh: Any, convex: bool = False) -> PreparedMesh:
-    if isinstance(mesh, PreparedMesh) and not convex:
+def _prepared(mesh: Any, kind: Optional[str] = None) -> PreparedMesh:
+    """Returns a mesh that is prepared as "mesh" or "hull". With None, a prepared mesh stays as it is."""
+    if isinstance(mesh, PreparedMesh) and kind in (None, mesh.geometry.kind):
         return mesh
     if not hasattr(mesh, "vertices") or not hasattr(mesh, "faces"):
         raise InputTypeError(f"mesh: a {type(mesh).__name__} has not both vertices and faces")
@@ -176,20 +177,22 @@ def _prepared(mesh: Any, convex: bool = False) -> PreparedMesh:
     for array in (vertices, faces):
         array.flags.writeable = False
     checked = Geometry.mesh(vertices, faces)
-    return PreparedMesh(Geometry.hull(vertices) if convex else checked, vertices, faces)
+    return PreparedMesh(Geometry.hull(vertices) if kind == "hull" else checked, vertices, faces)
 
 
 def mesh_to_BVH(mesh: Any) -> PreparedMesh:
     """Returns a mesh that is prepared for exact tests. Requires: `mesh` has ``vertices`` (n, 3) and ``faces`` (m, 3)."""
-    return _prepared(mesh)
+    return _prepared(mesh, "mesh")
 
 
 def mesh_to_convex(mesh: Any) -> PreparedMesh:
     """Returns the convex hull of a mesh, prepared for exact tests, which are faster than those of a mesh.
 
-    An index of a face is that of the mesh. Requires: `mesh` has ``vertices`` (n, 3) and ``faces`` (m, 3).
+    The index of a face is that of the face of the mesh that is nearest to the point.
+
+    Requires: `mesh` has ``vertices`` (n, 3) and ``faces`` (m, 3).
     """
-    return _prepared(mesh, convex=True)
+    return _prepared(mesh, "hull")
 
 
 class CollisionManager:
@@ -229,7 +232,10 @@ class CollisionManager:
         self._shapes = None
 
     def set_pair_ignored(self, name_a: str, name_b: str, ignored: bool = True) -> None:
-        """Sets whether :meth:`in_collision_internal` leaves out this pair. Raises a ValueError if there is no such pair."""
+        """Sets whether :meth:`in_collision_internal` leaves out this pair. Distances do not leave it out.
+
+        Raises a ValueError if there is no such pair.
+        """
         self._object(name_a)
         self._object(name_b)
         if name_a == name_b:
@@ -382,16 +388,16 @@ class CollisionManager:
         return self._shapes
 
     def _collide(self, other: Optional[Shapes], contacts: bool) -> Collisions:
-        keep = self._is_not_ignored if other is None and self._ignored else None
+        keep = self._ignored_filter() if other is None and self._ignored else None
         return collide(self._all(), against=other, stage="features" if contacts else "objects", max_contacts=ALL_CONTACTS, keep=keep,
                        engine=self._engine)
 
-    def _is_not_ignored(self, table: Collisions) -> Array:
-        """Returns a mask of pairs of the objects."""
+    def _ignored_filter(self) -> Callable[[Collisions], Array]:
+        """Returns a filter that leaves out the ignored pairs of the objects."""
         index = {name: number for number, name in enumerate(self._objects)}
-        ignored = np.sort([(index[a], index[b]) for a, b in self._ignored], axis=1)
-        numbers = np.array([len(index), 1])  # of each pair, one number
-        return np.isin(table.pairs @ numbers, ignored @ numbers, invert=True)
+        to_number = np.array([len(index), 1])  # a pair @ to_number: one number for each pair
+        ignored = np.sort([(index[a], index[b]) for a, b in self._ignored], axis=1) @ to_number
+        return lambda table: np.isin(table.pairs @ to_number, ignored, invert=True)
 
     def _nearest(self, first: Shapes, second: Optional[Shapes]) -> _Nearest:
         """Returns the smallest distance within a set, or between two sets.
@@ -516,11 +522,11 @@ def _distance_answer(nearest: _Nearest, pair: Optional[_Pair], name: Tuple[bool,
 def scene_to_collision(scene: Any) -> Tuple[CollisionManager, Dict[str, Geometry]]:
     """Returns a manager with the objects of a trimesh scene by the names of its nodes, and the geometry of each node.
 
-    Nodes of a geometry without faces (a path, a point cloud) are left out.
+    Nodes of a geometry without faces (a path, a point cloud, an empty mesh) are left out.
     """
     if not hasattr(scene, "graph") or not hasattr(scene, "geometry"):
         raise InputTypeError(f"scene: a {type(scene).__name__} has not both graph and geometry")
-    meshes = {name: mesh_to_BVH(mesh) for name, mesh in scene.geometry.items() if hasattr(mesh, "faces")}
+    meshes = {name: mesh_to_BVH(mesh) for name, mesh in scene.geometry.items() if len(getattr(mesh, "faces", ()))}
     manager = CollisionManager()
     for node in scene.graph.nodes_geometry:
         transform, name = scene.graph[node]

@@ -184,7 +184,7 @@ struct Tuning {
         std::uint64_t waiting_part = 16;        ///< one changed pair per this many pairs may wait to be merged
         std::uint64_t min_waiting = 1 << 14;    ///< changed pairs that may wait in a scene of any size
         std::size_t share_queries = 64;         ///< queries per share
-        std::size_t min_sorted_queries = 256;   ///< queries; fewer are answered in their own order
+        std::size_t min_sorted_queries = 256;   ///< queries; fewer are answered in the order of the call
         std::size_t exact_part = 1 << 14;       ///< pairs of enlarged boxes that a thread filters at a time
     } scene;
 };

@@ -174,6 +174,7 @@ def test_the_face_of_objects_that_meet(manager):
 def test_prepared_meshes():
     mesh = mesh_to_BVH(cube_mesh())
     assert mesh.geometry.kind == "mesh" and mesh_to_convex(cube_mesh()).geometry.kind == "hull"
+    assert mesh_to_BVH(mesh_to_convex(mesh)).geometry.kind == "mesh" and mesh_to_convex(mesh).geometry.kind == "hull"
     assert mesh.vertices.tolist() == CUBE_VERTICES.tolist() and mesh.faces.tolist() == CUBE_FACES.tolist()
     manager = CollisionManager()
     for name, x in (("a", 0), ("b", 1.5)):
@@ -245,5 +246,8 @@ def test_scene_to_collision():
     manager, geometries = scene_to_collision(Scene({"a": at(0), "b": at(1.5), "c": at(9)}))
     assert manager.in_collision_internal(return_names=True) == (True, {("a", "b")})
     assert list(geometries) == ["a", "b", "c"]
+    scene = Scene({"a": at(0)})
+    scene.geometry["empty"] = types.SimpleNamespace(vertices=np.zeros((0, 3)), faces=np.zeros((0, 3), dtype=np.int64))
+    assert list(scene_to_collision(scene)[1]) == ["a"]
     with pytest.raises(TypeError):
         scene_to_collision(cube_mesh())

@@ -28,7 +28,7 @@ struct Unit {
     std::uint32_t index = 0;
 
     SmallBox small(const CellBox& box) const;
-    /// Returns a region that contains the part of an entry's box within the unit.
+    /// Returns the region of the part of an entry's box within the unit.
     CellRegion region(const SmallBox& box) const {
         CellRegion region;
         for (unsigned axis = 0; axis < 3; ++axis) {

@@ -88,7 +88,7 @@ public:
     /// Appends the objects whose cells overlap `box`, each once, in no particular order. May also append objects that are only near `box`.
     void search(const CellBox& box, std::vector<std::uint32_t>& found) const;
     bool empty() const { return grids_.empty(); }
-    /// Returns the unit around a cell. Units of near numbers are near in memory. Requires: the octree is not empty.
+    /// Returns the unit of a leaf that holds a cell. Units of near numbers are near in memory. Requires: the octree is not empty.
     std::uint32_t unit_at(const Cell& cell) const;
 
     /// The visits of units that some changes need.

@@ -29,14 +29,14 @@ public:
         for (unsigned axis = 0; axis < 3; ++axis) {
             const SpaceMap& map = space.map();
             const double cell = (1u << SpaceMap::fine_bits) / double(map.scale[axis]);
-            const double entries_from = std::abs(double(map.origin[axis])), extent = cell * cells_per_axis;
+            const double origin_size = std::abs(double(map.origin[axis])), extent = cell * cells_per_axis;
             last_[axis] = double(space.last_cell(axis)) - spare_cells;
             // Differences beyond float32 are clamped. Then the axis cannot exclude a region.
-            if (!(entries_from + extent < double(FLT_MAX) / 2)) continue;
+            if (!(origin_size + extent < double(FLT_MAX) / 2)) continue;
             base_[axis] = origin[axis] + double(map.origin[axis]);
             cell_[axis] = cell;
-            slack_[axis] = spare_cells * cell + float32_roundings * (2 * entries_from + extent) +
-                           float64_roundings * (std::abs(origin[axis]) + entries_from + extent);
+            slack_[axis] = spare_cells * cell + float32_roundings * (2 * origin_size + extent) +
+                           float64_roundings * (std::abs(origin[axis]) + origin_size + extent);
         }
     }
 

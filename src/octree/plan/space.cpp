@@ -9,7 +9,6 @@
 #include <cfloat>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 #include <vector>
 

@@ -79,6 +79,8 @@ inline double square_at_least(const Box3d& a, const Box3d& b) {
     return square < RoundedSquare::least ? 0 : std::min(square, RoundedSquare::most);
 }
 
+/// Returns a value that square_at_least() of two boxes does not exceed if distance() of them is at most `distance`. The factor covers the
+/// errors of both squares. Outside the range in which RoundedSquare is accurate, the value is larger, so it excludes fewer boxes.
 inline double square_at_most(double distance) {
     constexpr double errors = 4 * RoundedSquare::error;
     const double square = distance * distance * (1 + errors);

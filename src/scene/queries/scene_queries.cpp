@@ -168,8 +168,8 @@ Box3d box_around(const Sphere& sphere) {
     return around;
 }
 
-/// Returns the box of the begin of a ray.
-Box3d begin_of(const Ray& ray) {
+/// Returns the origin of a ray, as a box.
+Box3d origin_of(const Ray& ray) {
     Box3d begin;
     for (int axis = 0; axis < 3; ++axis) begin.min[axis] = begin.max[axis] = ray.origin[axis];
     return begin;
@@ -177,46 +177,46 @@ Box3d begin_of(const Ray& ray) {
 
 }  // namespace
 
-/// Sets the order in which answer() answers the queries. around(i) returns a box that contains query `i`, or its begin.
-template <typename Around>
-void SceneQueries::sort_by_place(const View& scene, std::size_t queries, Around&& around) {
-    order_ = {};
+/// Returns an order in which queries that follow each other read the same memory: that of the units that hold the low corners of the boxes
+/// begin(i) of the queries. Few queries keep the order of the call. The order is valid until the next call.
+template <typename Begin>
+SceneQueries::Order SceneQueries::sorted_by_place(const View& scene, std::size_t queries, Begin&& begin) {
     if (scene.octree.empty() || queries < tuning().scene.min_sorted_queries ||
         queries > std::numeric_limits<std::uint32_t>::max())
-        return;
+        return {queries, {}};
     count_path(Path::queries_sorted);
     const std::span<std::uint64_t> keys = sorter_.take(queries);
     const std::size_t share_size = tuning().scene.share_queries;
     const auto set_keys = [&](std::size_t share, unsigned) {
         const std::size_t end = std::min((share + 1) * share_size, queries);
         for (std::size_t i = share * share_size; i < end; ++i) {
-            const CellBox cells = scene.octree.space().cells(scene.rounding.entry(around(i), 0));
+            const CellBox cells = scene.octree.space().cells(scene.rounding.entry(begin(i), 0));
             keys[i] = std::uint64_t(scene.octree.unit_at(cells.lo)) << 32 | i;
         }
     };
     team_.for_each((queries + share_size - 1) / share_size, std::ref(set_keys));
-    order_ = sorter_.sort(32, 32 + unsigned(std::bit_width(scene.octree.units())));
+    return {queries, sorter_.sort(32, 32 + unsigned(std::bit_width(scene.octree.units())))};
 }
 
-/// Calls find(query, worker) for each query in parallel, and joins the answers in the order of the queries. `find` appends
+/// Calls find(query, worker) for each query in parallel, in this order, and joins the answers in the order of the queries. `find` appends
 /// its answers to `collected`.
 template <typename Answer, typename Find>
-void SceneQueries::answer(std::size_t queries, std::vector<Answer> Worker::*collected, Answers<Answer>& answers,
+void SceneQueries::answer(const Order& order, std::vector<Answer> Worker::*collected, Answers<Answer>& answers,
                           Find&& find) {
     for (Worker& worker : workers_) (worker.*collected).clear();
-    parts_.resize(queries);
+    parts_.resize(order.queries);
     const std::size_t share_size = tuning().scene.share_queries;
     const auto find_share = [&](std::size_t share, unsigned number) {
         Worker& worker = workers_[number];
-        const std::size_t end = std::min((share + 1) * share_size, queries);
+        const std::size_t end = std::min((share + 1) * share_size, order.queries);
         for (std::size_t at = share * share_size; at < end; ++at) {
-            const std::size_t i = order_.empty() ? at : std::uint32_t(order_[at]);
+            const std::size_t i = order[at];
             const std::size_t begin = (worker.*collected).size();
             find(i, worker);
             parts_[i] = {number, begin, (worker.*collected).size()};
         }
     };
-    team_.for_each((queries + share_size - 1) / share_size, std::ref(find_share));
+    team_.for_each((order.queries + share_size - 1) / share_size, std::ref(find_share));
     answers.all.clear();
     answers.ends.clear();
     for (const Part& part : parts_) {
@@ -243,21 +243,21 @@ void SceneQueries::find_overlaps(const View& scene, const Box3d& around, const Q
 }
 
 void SceneQueries::overlaps(const View& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers) {
-    sort_by_place(scene, boxes.size(), [&](std::size_t i) { return boxes[i]; });
-    answer(boxes.size(), &Worker::indices, answers,
+    const Order order = sorted_by_place(scene, boxes.size(), [&](std::size_t i) { return boxes[i]; });
+    answer(order, &Worker::indices, answers,
            [&](std::size_t i, Worker& worker) { find_overlaps(scene, boxes[i], boxes[i], worker); });
 }
 
 void SceneQueries::overlaps(const View& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers) {
-    sort_by_place(scene, spheres.size(), [&](std::size_t i) { return box_around(spheres[i]); });
-    answer(spheres.size(), &Worker::indices, answers,
+    const Order order = sorted_by_place(scene, spheres.size(), [&](std::size_t i) { return box_around(spheres[i]); });
+    answer(order, &Worker::indices, answers,
            [&](std::size_t i, Worker& worker) { find_overlaps(scene, box_around(spheres[i]), spheres[i], worker); });
 }
 
 void SceneQueries::first_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
     const RegionMap map(scene.octree.space(), scene.rounding.origin);
-    sort_by_place(scene, rays.size(), [&](std::size_t i) { return begin_of(rays[i]); });
-    answer(rays.size(), &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
+    const Order order = sorted_by_place(scene, rays.size(), [&](std::size_t i) { return origin_of(rays[i]); });
+    answer(order, &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         FirstHit first(scene, rays[i]);
         SceneProbe(scene, first).search(map);
         if (first.best().index != ObjectTable::none) worker.hits.push_back(first.best());
@@ -266,8 +266,8 @@ void SceneQueries::first_hits(const View& scene, std::span<const Ray> rays, Answ
 
 void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
     const RegionMap map(scene.octree.space(), scene.rounding.origin);
-    sort_by_place(scene, rays.size(), [&](std::size_t i) { return begin_of(rays[i]); });
-    answer(rays.size(), &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
+    const Order order = sorted_by_place(scene, rays.size(), [&](std::size_t i) { return origin_of(rays[i]); });
+    answer(order, &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         const auto begin = std::ptrdiff_t(worker.hits.size());
         AllHits all(scene, rays[i], worker.hits);
         SceneProbe(scene, all).search(map);
@@ -281,8 +281,8 @@ void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answer
 void SceneQueries::nearest(const View& scene, std::span<const Box3d> places, const NearestLimits& limits,
                            Answers<Neighbor>& answers) {
     const RegionMap map(scene.octree.space(), scene.rounding.origin);
-    sort_by_place(scene, places.size(), [&](std::size_t i) { return places[i]; });
-    answer(places.size(), &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
+    const Order order = sorted_by_place(scene, places.size(), [&](std::size_t i) { return places[i]; });
+    answer(order, &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
         if (limits.count == 0) return;
         Nearest nearest(scene, places[i], limits, worker.neighbors);
         SceneProbe(scene, nearest).search(map);

@@ -3,7 +3,6 @@
 //
 // Invariants
 //   The octree yields candidates. The boxes in the object table decide.
-//   Many queries are answered in the order of the units in which they begin, so that queries that follow each other read the same memory.
 //   Objects that changed after the octree was brought up to date are ignored in it. Each query tests them one by one.
 #pragma once
 
@@ -55,10 +54,18 @@ private:
         std::size_t begin, end;
     };
 
-    template <typename Around>
-    void sort_by_place(const View& scene, std::size_t queries, Around&& around);
+    /// Order in which queries are answered.
+    struct Order {
+        std::size_t queries;
+        std::span<const std::uint64_t> sorted;  ///< number of a query in the low 32 bits; empty: the order of the call
+
+        std::size_t operator[](std::size_t at) const { return sorted.empty() ? at : std::uint32_t(sorted[at]); }
+    };
+
+    template <typename Begin>
+    Order sorted_by_place(const View& scene, std::size_t queries, Begin&& begin);
     template <typename Answer, typename Find>
-    void answer(std::size_t queries, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
+    void answer(const Order& order, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
     template <typename Query>
     void find_overlaps(const View& scene, const Box3d& around, const Query& query, Worker& worker) const;
 
@@ -66,8 +73,6 @@ private:
     std::vector<Worker> workers_;
     std::vector<Part> parts_;
     RadixSort<std::uint64_t> sorter_;
-    /// Order in which answer() answers the queries; each element has the number of a query in its low 32 bits. Empty: in their own order.
-    std::span<const std::uint64_t> order_;
 };
 
 }  // namespace octopair
