@@ -17,11 +17,13 @@ export class Timeline {
   playing = false;
   paused = false;
   frame = 0;
+  // The frame that was asked for last. It differs from `frame` while frames are read.
+  private wanted = 0;
+  private reading: Promise<void> | null = null;
   // Frames that can be shown: all, until the program says how many it has computed.
   done = 0;
   private plot: uPlot | null = null;
   private data: [number[], number[], number[], number[]] = [[], [], [], []];
-  private busy = false;
   private runs = 0;
   private readonly slider = byId<HTMLInputElement>('frame-slider');
   private readonly play = byId<HTMLButtonElement>('play');
@@ -36,6 +38,7 @@ export class Timeline {
     this.slider.addEventListener('input', () => void this.go(Number(this.slider.value)));
     for (const id of ['step-back', 'step-forward', 'frame-slider', 'speed-label']) byId(id).hidden = live;
     this.label();
+    this.tellReading();
     new ResizeObserver(() => this.draw()).observe(byId('plot'));
   }
 
@@ -65,14 +68,15 @@ export class Timeline {
 
   show(frame: number): void {
     this.frame = frame;
-    this.slider.value = String(frame);
+    if (!this.reading) this.wanted = frame;
+    this.slider.value = String(this.wanted);
     const waiting = this.done < this.frames ? `, ${count(this.done)} computed` : '';
     if (!this.live) byId('frame-text').textContent = `frame ${count(frame)} of ${count(this.frames)}${waiting}`;
     this.plot?.redraw(false);
   }
 
   step(by: number): void {
-    if (!this.live) void this.go(this.frame + by);
+    if (!this.live) void this.go(this.wanted + by);
   }
 
   toggle(): void {
@@ -91,33 +95,43 @@ export class Timeline {
     this.play.textContent = runs ? 'Pause' : 'Play';
   }
 
-  private async go(frame: number): Promise<void> {
-    const wanted = Math.min(Math.max(frame, 0), Math.max(this.done - 1, 0));
-    if (this.busy || wanted === this.frame) return;
-    this.busy = true;
+  // Shows a frame after the one that is being read. Of the frames that were asked for meanwhile, only the last is read.
+  private go(frame: number): Promise<void> {
+    this.wanted = Math.min(Math.max(frame, 0), Math.max(this.done - 1, 0));
+    this.slider.value = String(this.wanted);
+    this.reading ??= this.readWanted().finally(() => {
+      this.reading = null;
+      this.show(this.frame);
+      this.tellReading();
+    });
+    this.tellReading();
+    return this.reading;
+  }
+
+  private async readWanted(): Promise<void> {
     try {
-      await this.actions.go(wanted);
+      while (this.wanted !== this.frame) await this.actions.go(this.wanted);
     } catch (error) {
       this.playing = false;
       this.label();
       this.actions.failed(error);
-    } finally {
-      this.busy = false;
     }
-    // The slider may have moved on while the frame was read.
-    const now = Number(this.slider.value);
-    if (!this.playing && document.activeElement === this.slider && now !== wanted) await this.go(now);
+  }
+
+  // Tests wait until the shown frame is final.
+  private tellReading(): void {
+    document.documentElement.dataset.reading = String(this.reading !== null);
   }
 
   private async run(): Promise<void> {
     const run = ++this.runs;
     while (this.playing && run === this.runs) {
       const began = performance.now();
-      const next = this.frame + 1 >= this.done ? 0 : this.frame + 1;
+      const next = this.wanted + 1 >= this.done ? 0 : this.wanted + 1;
       if (next === 0 && this.done < this.frames) await pause(300);
       else await this.go(next);
-      const wanted = 1000 / Number(byId<HTMLSelectElement>('speed').value);
-      await pause(Math.max(5, wanted - (performance.now() - began)));
+      const interval = 1000 / Number(byId<HTMLSelectElement>('speed').value);
+      await pause(Math.max(5, interval - (performance.now() - began)));
     }
   }
 

@@ -193,6 +193,41 @@ test('frames step and play', 'moving', 100, async ({page, scene}) => {
   assert.ok(await page.locator('#plot canvas').count() === 1);
 });
 
+test('steps while a frame is read', 'moving', 50, async ({page}) => {
+  const read = [];
+  let release;
+  const held = new Promise(done => release = done);
+  await page.route('**/frame/*.json', async route => {
+    read.push(/\d+/.exec(new URL(route.request().url()).pathname)[0]);
+    await held;
+    await route.continue();
+  });
+  assert.equal(await data(page, 'reading'), 'false');
+  const asked = page.waitForRequest('**/frame/1.json');
+  await page.click('#step-forward');
+  await asked;
+  for (let k = 0; k < 3; ++k) await page.click('#step-forward');
+  await page.click('#step-back');
+  assert.equal(await data(page, 'frame'), '0');
+  assert.equal(await data(page, 'reading'), 'true');
+  assert.equal(await page.locator('#frame-slider').inputValue(), '3');
+  release();
+  await waitForData(page, 'frame', '3');
+  await waitForData(page, 'reading', 'false');
+  assert.match(await text(page, '#frame-text'), /^frame 3 of 40$/);
+  assert.deepEqual(read, ['1', '3']);
+});
+
+test('a frame that cannot be read', 'moving', 50, async ({page}) => {
+  await page.route('**/frame/1.json', route => route.abort());
+  await page.locator('#frame-slider').fill('1');
+  await page.waitForFunction(() => document.getElementById('message').textContent !== '');
+  assert.equal(await page.locator('#frame-slider').inputValue(), '0');
+  await page.unroute('**/frame/1.json');
+  await page.click('#step-forward');
+  await waitForData(page, 'frame', '1');
+}, {expected: /Failed to load|Failed to fetch/});
+
 test('frames play once at a time', 'moving', 50, async ({page}) => {
   await page.selectOption('#speed', '1');
   for (let k = 0; k < 9; ++k) await page.click('#play');
