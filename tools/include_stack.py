@@ -21,7 +21,7 @@ LAYERS = {
     "base": ("errors, buffers, checked casts", ["error"]),
     "parallel": ("threads; the only layer that uses oneTBB", []),
     "geometry": ("points, vectors, poses", ["pose"]),
-    "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "summary"]),
+    "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "spheres", "summary"]),
     "octree": ("how the octree's steps are run", []),
     "octree/plan": ("octal codes, the space, the octants", ["octal_code"]),
     "octree/build": ("encode, scatter, count", []),

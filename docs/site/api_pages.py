@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ElementTree
 COMPONENTS = [
     ("core", "octopair: boxes to pairs", "CMake target `octopair::octopair`. Engines find the pairs of boxes; a `Scene` keeps "
      "objects from step to step.",
-     ["octopair", "engine", "objects", "input", "options", "pair_list", "summary", "box_array", "job", "scene", "queries", "pose",
+     ["octopair", "engine", "objects", "spheres", "input", "options", "pair_list", "summary", "box_array", "job", "scene", "queries", "pose",
       "octal_code", "octants", "error"]),
     ("pipeline", "pipeline: filters and exact tests", "CMake target `octopair::pipeline`. Filters run behind any engine. Exact "
      "tests of shapes return contacts and depth.",

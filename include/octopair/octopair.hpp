@@ -21,5 +21,6 @@
 #include "octopair/pair_list.hpp"
 #include "octopair/pose.hpp"
 #include "octopair/scene.hpp"
+#include "octopair/spheres.hpp"
 #include "octopair/summary.hpp"
 #include "octopair/version.hpp"

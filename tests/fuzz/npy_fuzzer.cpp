@@ -8,7 +8,7 @@
 
 #include "fuzz/require.hpp"
 #include "io/boxes/npy.hpp"
-#include "io/boxes/spheres.hpp"
+#include "octopair/spheres.hpp"
 
 namespace {
 
@@ -23,10 +23,10 @@ void check_round_trip(const io::NpyHeader& header, std::uint64_t data_bytes) {
 
 template <typename Real>
 void check_spheres(std::span<const std::byte> data, std::uint64_t objects) {
-    std::vector<io::Sphere<Real>> spheres(objects);
+    std::vector<SphereRow<Real>> spheres(objects);
     if (objects > 0) std::memcpy(spheres.data(), data.data(), data.size());
     std::vector<Box<Real>> boxes(objects);
-    io::boxes_of_spheres<Real>(spheres, boxes, {"f.npy"});
+    boxes_of(spheres, boxes);
     for (std::size_t i = 0; i < objects; ++i) {
         for (int axis = 0; axis < 3; ++axis) {
             require(boxes[i].min[axis] <= spheres[i].centre[axis] && spheres[i].centre[axis] <= boxes[i].max[axis]);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "boxes/box_kernel.hpp"
+#include "boxes/sphere_boxes.hpp"
 #include "io/boxes/npy.hpp"
-#include "io/boxes/spheres.hpp"
 #include "io/spelling.hpp"
 #include "io/temporary.hpp"
 
@@ -86,10 +86,10 @@ struct NpyFile {
             if (columns == 6) {
                 boxes.push_back({{at[0], at[1], at[2]}, {at[3], at[4], at[5]}});
             } else if (is_wide) {
-                boxes.push_back(io::box_of_sphere(io::Sphere<double>{{at[0], at[1], at[2]}, at[3]}));
+                boxes.push_back(box_of_sphere(SphereRow<double>{{at[0], at[1], at[2]}, at[3]}));
             } else {
                 boxes.push_back(octopair::wide(
-                    io::box_of_sphere(io::Sphere<float>{{float(at[0]), float(at[1]), float(at[2])}, float(at[3])})));
+                    box_of_sphere(SphereRow<float>{{float(at[0]), float(at[1]), float(at[2])}, float(at[3])})));
             }
         }
         return boxes;

@@ -273,7 +273,7 @@ TEST_F(Npy, RefusesSpheresThatAreNone) {
               "object 0: centre y is nan, not a finite number");
     const float huge = std::numeric_limits<float>::max();
     EXPECT_EQ(refusal(npy_of<float>(NpyType::float32, {1, 4}, {0, 0, huge, huge})),
-              "object 0: its box is outside the range of the file's number type");
+              "object 0: its box is outside the range of float32");
 }
 
 TEST_F(Npy, RefusesOtherShapesAndTypes) {

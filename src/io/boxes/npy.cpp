@@ -9,11 +9,12 @@
 #include <fmt/format.h>
 
 #include "boxes/box_kernel.hpp"
-#include "io/boxes/spheres.hpp"
+#include "boxes/sphere_boxes.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/file_mapping.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats/format_choice.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair::io {
 
@@ -75,6 +76,24 @@ std::span<Real> as_numbers(std::span<Object> objects) {
     return {reinterpret_cast<Real*>(objects.data()), objects.size() * (sizeof(Object) / sizeof(Real))};
 }
 
+/// Consecutive spheres of a file: the first has the index `begin`.
+template <typename Real>
+struct Spheres {
+    std::span<const SphereRow<Real>> rows;
+    std::uint64_t begin;
+    std::string_view file;
+};
+
+template <typename Real>
+void find_boxes(const Spheres<Real>& spheres, std::span<Box<Real>> boxes, const std::stop_token& stop) {
+    try {
+        write_sphere_boxes(spheres.rows, boxes, spheres.begin, stop);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::cancelled) cancel();
+        refuse(spheres.file, error.what());
+    }
+}
+
 }  // namespace
 
 SceneShape scene_shape(const NpyHeader& header, std::string_view file) {
@@ -112,13 +131,13 @@ Buffer<Box<Real>> NpyScene::read_boxes(const ObjectRows& rows, const std::stop_t
     if (auto mapped = map_boxes<Real>(rows, min_mapped)) return std::move(*mapped);
     Buffer<Box<Real>> boxes{std::size_t(shape_.frames) * objects};
     if (shape_.spheres) {
-        Buffer<Sphere<Real>> spheres{objects};
+        Buffer<SphereRow<Real>> spheres{objects};
         if (header_.fortran_order) {
             read_columns(rows, as_numbers<Real>(spheres.span()), stop);
         } else {
             read_rows(rows.begin, spheres.span(), stop);
         }
-        boxes_of_spheres<Real>(spheres.span(), boxes.span(), {file_.path(), rows.begin, stop});
+        find_boxes<Real>({spheres.span(), rows.begin, file_.path()}, boxes.span(), stop);
         return boxes;
     }
     if (header_.fortran_order) {
@@ -172,7 +191,7 @@ void NpyScene::read_columns(const ObjectRows& rows, std::span<Real> values, cons
 /// Reads boxes or spheres that are adjacent in the file.
 template <typename T>
 void NpyScene::read_rows(std::uint64_t first, std::span<T> rows, const std::stop_token& stop) const {
-    using Real = std::conditional_t<std::is_same_v<T, Box3d> || std::is_same_v<T, Sphere<double>>, double, float>;
+    using Real = std::conditional_t<std::is_same_v<T, Box3d> || std::is_same_v<T, SphereRow<double>>, double, float>;
     read_numbers({file_, header_, first * (sizeof(T) / sizeof(Real))}, as_numbers<Real>(rows), stop);
 }
 

@@ -1,5 +1,5 @@
 // Tests the boxes of spheres against exact integers: rounded outward, and no larger than necessary.
-#include "io/boxes/spheres.hpp"
+#include "boxes/sphere_boxes.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "io/temporary.hpp"
 #include "support/calls.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
@@ -45,7 +45,7 @@ RC_GTEST_PROP(Spheres, Float64BoxIsTheSmallestThatHoldsTheExactOne, ()) {
     const int unit = std::min(centre.exponent, radius.exponent) - 2;
     const Wide c = scaled(centre.value(), unit), r = scaled(radius.value(), unit);
     const auto x = centre.value();
-    const Box3d box = io::box_of_sphere(io::Sphere<double>{{x, x, x}, radius.value()});
+    const Box3d box = box_of_sphere(SphereRow<double>{{x, x, x}, radius.value()});
     for (int axis = 0; axis < 3; ++axis) {
         RC_ASSERT(scaled(box.max[axis], unit) >= c + r);
         RC_ASSERT(scaled(box.min[axis], unit) <= c - r);
@@ -59,14 +59,14 @@ RC_GTEST_PROP(Spheres, Float32BoxIsTheSmallestThatHoldsTheFloat64One, ()) {
     const auto number = rc::gen::map(rc::gen::pair(rc::gen::inRange(-16777216, 16777217), rc::gen::inRange(-60, 40)),
                                      [](const std::pair<int, int>& p) { return std::ldexp(float(p.first), p.second); });
     const float centre = *rc::gen::resize(1000, number), radius = std::abs(*rc::gen::resize(1000, number));
-    const Box3f box = io::box_of_sphere(io::Sphere<float>{{centre, centre, centre}, radius});
+    const Box3f box = box_of_sphere(SphereRow<float>{{centre, centre, centre}, radius});
     const double low = double(centre) - double(radius), high = double(centre) + double(radius);
     RC_ASSERT(double(box.min[0]) <= low && double(std::nextafter(box.min[0], 1e38f)) > low);
     RC_ASSERT(double(box.max[1]) >= high && double(std::nextafter(box.max[1], -1e38f)) < high);
 }
 
 TEST(Spheres, ExactSumsStayExact) {
-    const Box3d box = io::box_of_sphere(io::Sphere<double>{{1, -2, 0}, 0.25});
+    const Box3d box = box_of_sphere(SphereRow<double>{{1, -2, 0}, 0.25});
     EXPECT_EQ(box.min[0], 0.75);
     EXPECT_EQ(box.max[1], -1.75);
     EXPECT_EQ(box.min[2], -0.25);
@@ -74,29 +74,41 @@ TEST(Spheres, ExactSumsStayExact) {
 
 TEST(Spheres, InexactSumsGoOutward) {
     const double tiny = 1e-30;
-    const Box3d box = io::box_of_sphere(io::Sphere<double>{{1, -1, 0}, tiny});
+    const Box3d box = box_of_sphere(SphereRow<double>{{1, -1, 0}, tiny});
     EXPECT_EQ(box.min[0], std::nextafter(1.0, 0.0));
     EXPECT_EQ(box.max[0], std::nextafter(1.0, 2.0));
     EXPECT_EQ(box.min[1], std::nextafter(-1.0, -2.0));
     EXPECT_EQ(box.max[2], tiny);
-    const Box3f narrow = io::box_of_sphere(io::Sphere<float>{{1, 1, 1}, 1e-9f});
+    const Box3f narrow = box_of_sphere(SphereRow<float>{{1, 1, 1}, 1e-9f});
     EXPECT_EQ(narrow.min[0], std::nextafter(1.0f, 0.0f));
     EXPECT_EQ(narrow.max[0], std::nextafter(1.0f, 2.0f));
 }
 
 TEST(Spheres, DenormalsAndEnds) {
     const double least = std::numeric_limits<double>::denorm_min();
-    EXPECT_EQ(io::box_of_sphere(io::Sphere<double>{{0, 0, 0}, least}).min[0], -least);
+    EXPECT_EQ(box_of_sphere(SphereRow<double>{{0, 0, 0}, least}).min[0], -least);
     const double huge = std::numeric_limits<double>::max();
-    EXPECT_TRUE(std::isinf(io::box_of_sphere(io::Sphere<double>{{huge, 0, 0}, huge}).max[0]));
-    EXPECT_EQ(io::box_of_sphere(io::Sphere<double>{{huge, 0, 0}, huge}).min[0], 0.0);
+    EXPECT_TRUE(std::isinf(box_of_sphere(SphereRow<double>{{huge, 0, 0}, huge}).max[0]));
+    EXPECT_EQ(box_of_sphere(SphereRow<double>{{huge, 0, 0}, huge}).min[0], 0.0);
 }
 
 TEST(Spheres, ConversionCanBeStopped) {
-    const std::vector<io::Sphere<float>> spheres = {{{0, 0, 0}, 1}};
+    const std::vector<SphereRow<float>> spheres = {{{0, 0, 0}, 1}};
     std::vector<Box3f> boxes(1);
-    const io::SpherePlace place{"f.npy", 0, requested_stop()};
-    (void)error_of(ErrorCode::cancelled, [&] { io::boxes_of_spheres<float>(spheres, boxes, place); });
+    (void)error_of(ErrorCode::cancelled, [&] { boxes_of(spheres, boxes, requested_stop()); });
+}
+
+TEST(Spheres, ErrorsNameTheSphere) {
+    const std::vector<SphereRow<double>> spheres = {{{0, 0, 0}, 1}, {{0, 0, 0}, -0.5}};
+    std::vector<Box3d> boxes(2);
+    try {
+        boxes_of(spheres, boxes);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(), "object 1: radius is -0.5, not a finite number >= 0");
+        EXPECT_EQ(error.code(), ErrorCode::bad_input);
+        EXPECT_EQ(error.place().value().index, 1u);
+    }
 }
 
 }  // namespace
