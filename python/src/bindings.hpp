@@ -19,6 +19,7 @@ void bind_jobs(py::module_& module);
 void bind_octants(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_shapes(py::module_& module);
+void bind_spheres(py::module_& module);
 void bind_pipeline(py::module_& module);
 
 /// Returns (codes, bounds, leaf, entries, homes, objects, offsets, home_octants, space), which are the attributes of octopair.Octants.

@@ -41,7 +41,10 @@ void bind_octal_code(py::module_& module) {
             "__lt__", [](OctalCode a, OctalCode b) { return a < b; }, py::is_operator())
         .def(
             "__le__", [](OctalCode a, OctalCode b) { return a <= b; }, py::is_operator())
-        .def("__hash__", [](OctalCode code) { return code.key() ^ code.level(); });
+        .def("__hash__", [](OctalCode code) { return code.key() ^ code.level(); })
+        .def("__reduce__", [](const py::object& code) {
+            return py::make_tuple(py::type::of(code), py::make_tuple(code.attr("digits")));
+        });
 }
 
 }  // namespace
@@ -58,6 +61,7 @@ PYBIND11_MODULE(_core, module) {
     bind_jobs(module);
     bind_scenes(module);
     bind_shapes(module);
+    bind_spheres(module);
     bind_pipeline(module);
     bind_octal_code(module);
     bind_octants(module);

@@ -83,7 +83,8 @@ void bind_engines(py::module_& module) {
         .def("find_pairs", &find_pairs, py::arg("input"), py::arg("options"), py::arg("progress") = py::none())
         .def("count_pairs", &count_pairs, py::arg("input"), py::arg("options"), py::arg("progress") = py::none())
         .def("allocate_boxes", &allocate_boxes, py::arg("count"), py::arg("float64") = false)
-        .def("worker_faults", &faults_of);
+        .def("worker_faults", &faults_of)
+        .def("close", &PythonEngine::close);
 }
 
 }  // namespace octopair::python

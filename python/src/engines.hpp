@@ -6,6 +6,7 @@
 
 #include "call.hpp"
 #include "octopair/engine.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair::python {
 
@@ -14,9 +15,24 @@ class PythonEngine {
 public:
     /// `waits`: calls may wait for other processes.
     explicit PythonEngine(std::unique_ptr<Engine> engine, bool waits = false)
-        : engine_(engine.release()), waits_(waits) {}
+        : engine_(engine.release(), ReleasedDelete()), waits_(waits) {}
 
-    Engine& engine() { return *engine_; }
+    /// Returns the engine. Requires: the turn, or the GIL during the whole use. Throws: Error{usage} if the engine is closed.
+    Engine& engine() {
+        check_open();
+        return *engine_;
+    }
+    /// Returns the engine for a use without the turn and the GIL. Requires: the GIL. Throws: Error{usage} if the engine is closed.
+    std::shared_ptr<Engine> shared() {
+        check_open();
+        return engine_;
+    }
+    /// Waits for the call that runs, cancels all jobs, and ends the engine: its threads, processes or connection.
+    void close() {
+        if (is_forked()) return;
+        const Turn::Holder turn(turn_);
+        engine_.reset();
+    }
     PairList& list() { return list_; }
     Turn& turn() { return turn_; }
     /// Notes that the engine has jobs, for which calls wait.
@@ -25,7 +41,11 @@ public:
     std::uint64_t size_of(std::uint64_t objects) const { return waits_ ? ~std::uint64_t(0) : objects; }
 
 private:
-    std::unique_ptr<Engine, ReleasedDelete> engine_;
+    void check_open() const {
+        if (!engine_) throw Error(ErrorCode::usage, "the engine is closed");
+    }
+
+    std::shared_ptr<Engine> engine_;  // null: closed
     PairList list_;
     Turn turn_;
     std::atomic<bool> waits_;

@@ -1,7 +1,11 @@
 // Job: a search that runs while Python does other work. Stream: the pairs of a search in chunks, as an iterator.
+//
+// A thread of Python runs the callbacks of all jobs (octopair/_engine.py). It waits for the jobs that it watches, without polling: a job
+// destroys its progress function when it ends, and this tells the thread.
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <list>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -44,16 +48,78 @@ bool wait_for_end(double seconds, const std::function<bool(std::chrono::nanoseco
     }
 }
 
+/// The numbers of watched jobs that have ended, in the order of their ends.
+struct EndedJobs {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::list<std::uint64_t> numbers;
+};
+
+/// Never destroyed, because jobs may end as long as the process runs.
+EndedJobs& ended_jobs() {
+    static auto* const all = new EndedJobs;
+    return *all;
+}
+
+/// Waits for the end of a watched job, and returns its number.
+std::uint64_t next_ended_job() {
+    check_not_forked();
+    EndedJobs& ended = ended_jobs();
+    const Unlocked unlocked;
+    std::unique_lock lock(ended.mutex);
+    ended.changed.wait(lock, [&] { return !ended.numbers.empty(); });
+    const std::uint64_t number = ended.numbers.front();
+    ended.numbers.pop_front();
+    return number;
+}
+
+/// Says when a job ends. The mutex of EndedJobs guards the members.
+class JobWatch {
+public:
+    /// Makes next_ended_job() return `number` at the end of the job. Returns false if the job has ended already.
+    bool start(std::uint64_t number) {
+        std::list<std::uint64_t> node{number};
+        const std::lock_guard lock(ended_jobs().mutex);
+        if (ended_) return false;
+        number_ = std::move(node);
+        return true;
+    }
+    void end() noexcept {
+        EndedJobs& ended = ended_jobs();
+        const std::lock_guard lock(ended.mutex);
+        ended_ = true;
+        if (number_.empty()) return;
+        ended.numbers.splice(ended.numbers.end(), number_);  // allocates nothing
+        ended.changed.notify_all();
+    }
+
+private:
+    std::list<std::uint64_t> number_;  // empty: nobody watches
+    bool ended_ = false;
+};
+
+/// Ends a watch when it is destroyed.
+struct WatchEnd {
+    explicit WatchEnd(std::shared_ptr<JobWatch> ended) : watch(std::move(ended)) {}
+    WatchEnd(const WatchEnd&) = delete;
+    WatchEnd& operator=(const WatchEnd&) = delete;
+    ~WatchEnd() { watch->end(); }
+
+    std::shared_ptr<JobWatch> watch;
+};
+
 /// A job, the engine that runs it, and the arrays that it reads.
 class PythonJob {
 public:
-    PythonJob(const std::shared_ptr<PythonEngine>& engine, const py::object& input, const Options& options)
+    PythonJob(const std::shared_ptr<PythonEngine>& engine, const py::object& input, Options options)
         : engine_(engine), input_(input) {
         engine->turn().check_free();
         engine->note_job();
         JobInput borrowed = borrowed_input(input.cast<const ArrayInput&>());
+        options.progress = [end = std::make_shared<WatchEnd>(watch_)](double) {};
+        const std::shared_ptr<Engine> open = engine->shared();
         const Unlocked unlocked;
-        job_.reset(new Job(engine->engine().submit(std::move(borrowed), options)));
+        job_.reset(new Job(open->submit(std::move(borrowed), std::move(options))));
     }
     PythonJob(const PythonJob&) = delete;
     PythonJob& operator=(const PythonJob&) = delete;
@@ -71,6 +137,11 @@ public:
     void cancel() {
         if (!is_forked()) job_->cancel();
     }
+    /// Makes next_ended_job() return `number` when the job ends. Returns false if the job is ending or has ended.
+    bool watch(std::uint64_t number) {
+        check_not_forked();
+        return watch_->start(number);
+    }
     bool wait(double seconds) {
         check_not_forked();
         return wait_for_end(seconds, [&](std::chrono::nanoseconds time) { return job_->wait_for(time); });
@@ -85,6 +156,7 @@ public:
 private:
     std::shared_ptr<PythonEngine> engine_;
     py::object input_;
+    std::shared_ptr<JobWatch> watch_ = std::make_shared<JobWatch>();
     std::unique_ptr<Job, ReleasedDelete> job_;
 };
 
@@ -166,9 +238,10 @@ public:
         auto sink = [this, end = std::make_shared<QueueEnd>(queue_)](std::span<const Pair> pairs) {
             queue_.put(pairs);
         };
+        const std::shared_ptr<Engine> open = engine->shared();
         const Unlocked unlocked;
-        job_ = std::shared_ptr<Job>(
-            new Job(engine->engine().submit_stream(std::move(borrowed), std::move(sink), options)), ReleasedDelete());
+        job_ = std::shared_ptr<Job>(new Job(open->submit_stream(std::move(borrowed), std::move(sink), options)),
+                                    ReleasedDelete());
     }
     PythonStream(const PythonStream&) = delete;
     PythonStream& operator=(const PythonStream&) = delete;
@@ -234,11 +307,12 @@ private:
 
 void bind_jobs(py::module_& module) {
     py::class_<PythonJob>(module, "Job")
-        .def(py::init<const std::shared_ptr<PythonEngine>&, const py::object&, const Options&>(), py::arg("engine"),
+        .def(py::init<const std::shared_ptr<PythonEngine>&, const py::object&, Options>(), py::arg("engine"),
              py::arg("input"), py::arg("options"))
         .def_property_readonly("state", &PythonJob::state)
         .def_property_readonly("progress", &PythonJob::progress)
         .def("cancel", &PythonJob::cancel)
+        .def("watch", &PythonJob::watch, py::arg("number"))
         .def("wait", &PythonJob::wait, py::arg("seconds") = -1.0)
         .def("take_result", &PythonJob::take_result);
     py::class_<PythonStream>(module, "Stream")
@@ -247,6 +321,7 @@ void bind_jobs(py::module_& module) {
         .def("next", &PythonStream::next)
         .def("close", &PythonStream::close)
         .def_property_readonly("summary", &PythonStream::summary);
+    module.def("next_ended_job", &next_ended_job);
 }
 
 }  // namespace octopair::python

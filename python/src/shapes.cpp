@@ -2,6 +2,7 @@
 
 #include <array>
 #include <utility>
+#include <variant>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -33,6 +34,37 @@ Geometry mesh(const py::array& vertices, const py::array& triangles, double weld
     if (weld_tolerance > 0) weld(mesh, weld_tolerance);
     return Geometry(std::move(mesh));
 }
+
+py::array_t<double> array_of_points(const std::vector<Point3d>& points) {
+    return array_of<double>(std::vector(points), {3});
+}
+
+/// Returns the name of the static function that makes a shape, and its arguments.
+struct Recipe {
+    py::tuple operator()(const shape::Sphere& sphere) const { return py::make_tuple("sphere", sphere.radius); }
+    py::tuple operator()(const shape::Box& box) const { return py::make_tuple("box", box.half_extents); }
+    py::tuple operator()(const shape::Capsule& capsule) const {
+        return py::make_tuple("capsule", capsule.radius, capsule.length);
+    }
+    py::tuple operator()(const shape::Cylinder& cylinder) const {
+        return py::make_tuple("cylinder", cylinder.radius, cylinder.length);
+    }
+    py::tuple operator()(const shape::Cone& cone) const { return py::make_tuple("cone", cone.radius, cone.length); }
+    py::tuple operator()(const shape::Ellipsoid& ellipsoid) const {
+        return py::make_tuple("ellipsoid", ellipsoid.radii);
+    }
+    py::tuple operator()(const shape::Plane& plane) const {
+        return py::make_tuple("plane", plane.normal, plane.offset);
+    }
+    py::tuple operator()(const shape::ConvexHull& hull) const {
+        return py::make_tuple("hull", array_of_points(hull.points));
+    }
+    /// The mesh is welded already.
+    py::tuple operator()(const shape::Mesh& mesh) const {
+        return py::make_tuple("mesh", array_of_points(mesh.vertices),
+                              array_of<std::uint32_t>(std::vector(mesh.triangles), {3}));
+    }
+};
 
 /// Returns boxes of triangles (n, 9) in float32.
 py::array triangle_boxes(const py::array& triangles) {
@@ -124,7 +156,8 @@ void bind_shapes(py::module_& module) {
             "hull", [](const py::array& points) { return prepared(shape::ConvexHull{points_of(points)}); },
             py::arg("points"))
         .def_static("mesh", &mesh, py::arg("vertices"), py::arg("triangles"), py::arg("weld") = 0.0)
-        .def_property_readonly("closed", &Geometry::closed);
+        .def_property_readonly("closed", &Geometry::closed)
+        .def("recipe", [](const Geometry& geometry) { return std::visit(Recipe(), geometry.shape()); });
     py::class_<PythonShapes>(module, "Shapes")
         .def(py::init<std::vector<Geometry>, py::tuple>(), py::arg("geometries"), py::arg("columns"))
         .def("boxes", &PythonShapes::boxes)
