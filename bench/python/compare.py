@@ -128,7 +128,7 @@ def main():
     parser.add_argument("--json")
     arguments = parser.parse_args()
     library = load(arguments.calls)
-    boxes, few = op.generate("uniform", arguments.objects, 1), op.generate("uniform", min(10_000, arguments.objects), 1)
+    boxes, few = op.generate("uniform", arguments.objects, seed=1), op.generate("uniform", min(10_000, arguments.objects), seed=1)
     results = {"objects": arguments.objects, "calls": compare_calls(library, boxes, arguments.rounds),
                "calls with 10,000 boxes": compare_calls(library, few, arguments.rounds * 20),
                "step with 1% moved": compare_steps(library, boxes, arguments.rounds),

@@ -5,8 +5,8 @@
 >>> op.find_pairs(boxes)
 array([[0, 2]], dtype=uint32)
 
-A box is a row of min x, y, z, max x, y, z. Boxes are closed: boxes that touch are a pair. No pair is missing and none is extra; the bytes
-are the same for every engine and any number of threads.
+A box is a row of min x, y, z, max x, y, z; a sphere is a row of centre x, y, z, radius. Boxes are closed: boxes that touch are a pair. No
+pair is missing and none is extra; the bytes are the same for every engine and any number of threads.
 
 ===================  ============================================================================
 to do this           use
@@ -18,6 +18,7 @@ collide shapes       :class:`Shapes` and :func:`collide`; filters: :class:`Pipel
 check a mesh         :func:`self_intersections`
 see the octree       :func:`list_octants`, :meth:`Scene.octants`
 replace python-fcl   :class:`octopair.trimesh.CollisionManager`
+tables for pandas    :meth:`Collisions.to_pandas`; ``dict(table)``, ``pandas.DataFrame(table)``
 look at a scene      :class:`View`: a running scene in a browser
 read files           :func:`detect`, :func:`generate`, :func:`replay`: what the program does
 use a server         ``Engine("unix:PATH")``, :class:`octopair.remote.JobClient`
@@ -26,34 +27,54 @@ use MPI              :func:`mpi_engine` with a communicator of mpi4py
 
 The calls release the GIL. Ctrl-C ends a call within 200 ms; not interrupted are the preparation of a large mesh (1 s per
 million triangles), a single query with very many answers, and Python code in callbacks. In an event loop of asyncio use
-:meth:`Engine.submit`, whose jobs can be cancelled. Calls in a process that was forked after octopair was used raise
+``await engine.submit(boxes)``. Calls in a process that was forked after octopair was used raise
 :class:`UsageError`; use the start method ``spawn`` of multiprocessing.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, List
 
 from ._arrays import id_dtype
+from ._collisions import Collisions
 from ._core import OctalCode, __version__
-from ._engine import Engine, Job, PairStream, count_pairs, find_pairs, stream_pairs
+from ._engine import Engine, count_pairs, find_pairs, stream_pairs
 from ._errors import (CancelledError, EngineError, Error, FileError, InputError, InputTypeError, ResourceLimitError, UsageError)
+from ._jobs import Job, PairStream
 from ._octants import Octants, list_octants
 from ._pipeline import Pipeline, collide, self_intersections
-from ._program import detect, generate, replay
-from ._results import (COLLISION_CLASSES, DEPTH_KINDS, Answers, Collisions, FilterCounts, Hits, JobResult, Neighbors,
-                       PipelineSummary, StepResult, StepSeconds, Summary)
+from ._program import Detection, detect, generate, replay
+from ._results import (COLLISION_CLASSES, DEPTH_KINDS, Answers, FilterCounts, Hits, JobResult, Neighbors, PipelineSummary, StepResult,
+                       StepSeconds, Summary)
 from ._scene import Scene
 from ._shapes import Geometry, Shapes, make_poses
 from ._viewer import View
 
 __all__ = [
-    "COLLISION_CLASSES", "DEPTH_KINDS", "Answers", "CancelledError", "Collisions", "Engine", "EngineError", "Error", "FileError",
+    "COLLISION_CLASSES", "DEPTH_KINDS", "Answers", "CancelledError", "Collisions", "Detection", "Engine", "EngineError", "Error", "FileError",
     "FilterCounts", "Geometry", "Hits", "InputError", "InputTypeError", "Job", "JobResult", "Neighbors", "OctalCode", "Octants", "PairStream",
     "Pipeline", "PipelineSummary", "ResourceLimitError", "Scene", "Shapes", "StepResult", "StepSeconds", "Summary", "UsageError", "View",
     "__version__", "collide", "count_pairs", "detect", "find_pairs", "generate", "id_dtype", "list_octants", "make_poses", "mpi_engine", "replay",
     "self_intersections", "stream_pairs",
 ]
+_MODULES = ("mpi", "remote", "trimesh")  # imported when they are used
+
+if TYPE_CHECKING:
+    from . import mpi as mpi, remote as remote, trimesh as trimesh
+else:
+    def __getattr__(name: str) -> Any:
+        if name not in _MODULES:
+            raise AttributeError(f"module 'octopair' has no attribute {name!r}")
+        import importlib
+        try:
+            return importlib.import_module("." + name, __name__)
+        except UsageError as error:  # this octopair was built without it
+            raise AttributeError(f"module 'octopair' has no attribute {name!r}: {error}") from error
+
+
+def __dir__() -> List[str]:
+    """Returns the names of the interface."""
+    return sorted([*__all__, *_MODULES])
 
 
 def mpi_engine(comm: Any, *, threads: int = 1) -> Engine:

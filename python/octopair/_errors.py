@@ -1,4 +1,7 @@
-"""Exceptions. One table maps the codes of the C++ library to classes of Python."""
+"""Exceptions. One table maps the codes of the C++ library to classes of Python.
+
+Their ``__module__`` is that of their users, so tracebacks show ``octopair.InputError``.
+"""
 
 from __future__ import annotations
 
@@ -76,6 +79,8 @@ class CancelledError(Error):
 
 # In the order of octopair::ErrorCode.
 _TABLE = (UsageError, InputError, FileError, ResourceLimitError, EngineError, CancelledError)
+for _kind in (Error, InputTypeError, *_TABLE):
+    _kind.__module__ = "octopair"
 
 
 def make(code: int, message: str, index: Optional[int] = None, of_set: Optional[int] = None) -> Error:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import operator
-from typing import Any, List
+from typing import List, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _arrays, _core
 from ._arrays import Array
@@ -76,7 +77,8 @@ class Octants:
         return f"Octants({len(self):,} octants, {len(self.objects):,} entries)"
 
 
-def list_octants(boxes: Any, margin: float = 0, threads: int = 0, *, padding: Any = None, copy: bool = False) -> Octants:
+def list_octants(boxes: ArrayLike, *, margin: float = 0, threads: int = 0, padding: Optional[ArrayLike] = None,
+                 copy: bool = False) -> Octants:
     """Lists the octants that :func:`octopair.find_pairs` uses for these boxes.
 
     Parameters are those of :func:`octopair.find_pairs`. The result does not depend on `threads`.
@@ -92,4 +94,4 @@ def list_octants(boxes: Any, margin: float = 0, threads: int = 0, *, padding: An
     True
     """
     data = _core.Input(*_arrays.join_input(boxes, None, (padding, None), copy))
-    return Octants(*_core.list_octants(data, _arrays.real(margin, "margin"), _arrays.whole(threads, "threads", MOST_THREADS)))
+    return Octants(*_core.list_octants(data, _arrays.margin_of(margin), _arrays.whole(threads, "threads", MOST_THREADS)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Literal, Optional
+from typing import Any, Literal, Optional, Union
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from . import _arrays, _core
 from ._errors import InputError, InputTypeError
 
 Order = Literal["ascending", "octal"]
+PathLike = Union[str, "os.PathLike[str]"]
 MOST_PAIRS = (1 << 64) - 1
 MOST_THREADS = 4096
 _DEFAULT_OPTIONS = _core.Options()
@@ -20,7 +21,7 @@ def call_options(margin: float = 0, order: str = "ascending", limit: Optional[in
                  buffer_bytes: Optional[int] = None) -> _core.Options:
     """Returns the options of a call."""
     if type(margin) is not float:
-        margin = _arrays.real(margin, "margin")
+        margin = _arrays.margin_of(margin)
     if margin == 0 and isinstance(order, str) and order == "ascending" and limit is None and not verify and buffer_bytes is None:
         return _DEFAULT_OPTIONS
     options = _core.Options()

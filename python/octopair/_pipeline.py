@@ -5,16 +5,19 @@ from __future__ import annotations
 from typing import Any, Callable, Dict, Literal, Mapping, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _core
 from ._arrays import Array
+from ._collisions import Collisions
 from ._engine import Engine
 from ._errors import InputError, InputTypeError, UsageError
 from ._options import MOST_THREADS, Order, call_options
 from ._progress import Progress, reporter
-from ._results import Collisions, PipelineSummary
-from ._shapes import Shapes, face_array
+from ._results import PipelineSummary
+from ._shapes import Shapes
 
+Adjacent = Literal["beyond_shared", "exclude", "include"]
 ADJACENT = ("beyond_shared", "exclude", "include")
 """Treatments of triangles that share corners: kept if they also meet elsewhere, dropped, kept."""
 
@@ -40,7 +43,7 @@ class Pipeline:
            [0, 3]], dtype=uint32)
     """
 
-    def __init__(self, threads: int = 0) -> None:
+    def __init__(self, *, threads: int = 0) -> None:
         self._pipeline = _core.Pipeline(_arrays.whole(threads, "threads", MOST_THREADS))
         self._filters: list[str] = []
         self._joins: list[Tuple[str, bool]] = []
@@ -60,7 +63,7 @@ class Pipeline:
             if not join and against is not None:
                 raise UsageError(f"filter {name!r} has no second set, but the boxes have; pass against to the filter")
 
-    def keep(self, condition: Callable[[Collisions], Any], name: str = "") -> "Pipeline":
+    def keep(self, condition: Callable[[Collisions], Any], *, name: str = "") -> "Pipeline":
         """Adds a filter of your own.
 
         Parameters
@@ -87,28 +90,22 @@ class Pipeline:
         self._pipeline.add_callable(label, keep_batch)
         return self._added(label)
 
-    def groups(self, groups: Any, mask: Any, against: Optional[Tuple[Any, Any]] = None) -> "Pipeline":
-        """Keeps pairs where b's mask has a bit of a's groups, and a's mask has a bit of b's groups. Arrays of uint32."""
+    def groups(self, groups: ArrayLike, mask: ArrayLike, *, against: Optional[Tuple[ArrayLike, ArrayLike]] = None) -> "Pipeline":
+        """Keeps pairs where b's mask has a bit of a's groups, and a's mask has a bit of b's groups. Integers of 32 bits for each object;
+        `against`: a pair of groups and mask."""
         if against is not None and (not isinstance(against, (tuple, list)) or len(against) != 2):
             raise InputTypeError("against: it must be (groups, mask)")
-        first = (_column(groups, "groups"), _column(mask, "mask"))
-        second = None if against is None else (_column(against[0], "groups"), _column(against[1], "mask"))
+        first = (_integers(groups, "groups"), _integers(mask, "mask"))
+        second = None if against is None else (_integers(against[0], "groups"), _integers(against[1], "mask"))
         self._pipeline.add_groups(first, second)
         return self._added("groups", against is not None)
 
-    def ignored_pairs(self, pairs: Any, join: bool = False) -> "Pipeline":
+    def ignored_pairs(self, pairs: ArrayLike, *, join: bool = False) -> "Pipeline":
         """Drops these pairs, integers of shape (m, 2). Without `join`, (a, b) also drops (b, a)."""
-        array = _arrays.array_of(pairs, "pairs", copy=True)
-        if array.size == 0:
-            array = np.empty((0, 2), dtype=np.uint32)
-        if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
-            raise InputError(f"pairs: {array.dtype} of the shape {array.shape}; it must have integers of the shape (m, 2)")
-        if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
-            raise InputError("pairs: an index is below 0 or above 4294967295")
-        self._pipeline.add_ignored_pairs(np.ascontiguousarray(array, dtype=np.uint32), bool(join))
+        self._pipeline.add_ignored_pairs(_arrays.integers(pairs, "pairs", (None, 2)), bool(join))
         return self._added("ignored pairs", bool(join))
 
-    def name_rules(self, names: Sequence[str], rules: Sequence[Tuple[str, str]],
+    def name_rules(self, names: Sequence[str], rules: Sequence[Tuple[str, str]], *,
                    against: Optional[Sequence[str]] = None) -> "Pipeline":
         """Drops pairs whose names match a rule: a pair of patterns, where ``*`` stands for any characters and ``?`` for one."""
         patterns = []
@@ -119,7 +116,7 @@ class Pipeline:
         self._pipeline.add_names(_arrays.texts(names, "names"), patterns, second)
         return self._added("name rules", second is not None)
 
-    def column_rules(self, columns: Mapping[str, Sequence[str]], rules: Sequence[Tuple[Mapping[str, str], Mapping[str, str]]],
+    def column_rules(self, columns: Mapping[str, Sequence[str]], rules: Sequence[Tuple[Mapping[str, str], Mapping[str, str]]], *,
                      against: Optional[Mapping[str, Sequence[str]]] = None) -> "Pipeline":
         """Drops pairs whose objects match a rule in several columns of texts.
 
@@ -162,25 +159,25 @@ class Pipeline:
                                    None if against is None else _text_columns(against, names, "against"))
         return self._added("name rules", against is not None)
 
-    def parents(self, parents: Any, against: Any = None) -> "Pipeline":
+    def parents(self, parents: ArrayLike, against: Optional[ArrayLike] = None) -> "Pipeline":
         """Keeps pairs of objects with different parents: any number per object, such as that of a body."""
-        self._pipeline.add_parents(_column(parents, "parents"), None if against is None else _column(against, "against"))
+        self._pipeline.add_parents(_integers(parents, "parents"), None if against is None else _integers(against, "against"))
         return self._added("same parent", against is not None)
 
-    def bounding_spheres(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
+    def bounding_spheres(self, shapes: Shapes, against: Optional[Shapes] = None, *, margin: float = 0) -> "Pipeline":
         """Drops pairs whose bounding spheres are further apart than margin and paddings."""
         return self._shapes("bounding spheres", (shapes, against), (margin, 0, 0.0, None))
 
-    def oriented_boxes(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
+    def oriented_boxes(self, shapes: Shapes, against: Optional[Shapes] = None, *, margin: float = 0) -> "Pipeline":
         """Drops pairs whose oriented boxes are further apart than margin and paddings."""
         return self._shapes("oriented boxes", (shapes, against), (margin, 0, 0.0, None))
 
-    def exact_objects(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None) -> "Pipeline":
+    def exact_objects(self, shapes: Shapes, against: Optional[Shapes] = None, *, margin: float = 0) -> "Pipeline":
         """Keeps objects that meet, or whose distance is at most margin and paddings. Computes class, distance and nearest points; for
         moving objects, the time of impact."""
         return self._shapes("exact object", (shapes, against), (margin, 0, 0.0, None))
 
-    def exact_features(self, shapes: Shapes, margin: float = 0, against: Optional[Shapes] = None, *, max_contacts: int = 16,
+    def exact_features(self, shapes: Shapes, against: Optional[Shapes] = None, *, margin: float = 0, max_contacts: int = 16,
                        tolerance: float = 0, duplicate_tolerance: Optional[float] = None) -> "Pipeline":
         """Computes the class, the depth and the contacts of each pair. Requires :meth:`exact_objects` before it.
 
@@ -197,12 +194,13 @@ class Pipeline:
 
     def _shapes(self, kind: str, sets: Tuple[Shapes, Optional[Shapes]], options: Tuple[Any, ...]) -> "Pipeline":
         first, second = sets
-        for shapes in (first,) if second is None else sets:
-            if not isinstance(shapes, Shapes):
-                raise InputTypeError(f"shapes: a {type(shapes).__name__} is not a Shapes")
+        if not isinstance(first, Shapes):
+            raise InputTypeError(f"shapes: a {type(first).__name__} is not a Shapes")
+        if second is not None and not isinstance(second, Shapes):
+            raise InputTypeError(f"against: a {type(second).__name__} is not a Shapes{_margin_hint(second)}")
         margin, contacts, tolerance, duplicate = options
         self._pipeline.add_shapes(kind, first._shapes, None if second is None else second._shapes,
-                                  (_arrays.real(margin, "margin"), _arrays.whole(contacts, "max_contacts"),
+                                  (_arrays.margin_of(margin), _arrays.whole(contacts, "max_contacts"),
                                    _arrays.real(tolerance, "tolerance"),
                                    None if duplicate is None else _arrays.real(duplicate, "duplicate_tolerance")))
         self._names = (first.names, None if second is None else second.names)
@@ -213,15 +211,16 @@ class Pipeline:
         self._pipeline.add_depth(_arrays.real(least, "min_depth"))
         return self._added("depth")
 
-    def triangles(self, triangles: Any, owners: Any = None, *, adjacent: str = "beyond_shared", margin: float = 0,
-                  features: bool = False, tolerance: float = 0, against: Optional[Tuple[Any, Any]] = None) -> "Pipeline":
+    def triangles(self, triangles: ArrayLike, *, owners: Optional[ArrayLike] = None, adjacent: Adjacent = "beyond_shared",
+                  margin: float = 0, features: bool = False, tolerance: float = 0,
+                  against: Optional[Tuple[ArrayLike, Optional[ArrayLike]]] = None) -> "Pipeline":
         """Keeps triangles that meet, or whose distance is at most the margin.
 
         Parameters
         ----------
-        triangles : array, shape (n, 3, 3)
-            Corners of each triangle; converted to float64.
-        owners : array, shape (n,), uint32, optional
+        triangles : array-like, shape (n, 3, 3)
+            Corners of each triangle.
+        owners : array-like of integers, shape (n,), optional
             Number of each triangle's mesh. Default: all are of one mesh.
         adjacent : {"beyond_shared", "exclude", "include"}
             Triangles of one mesh that share corners: kept if they also meet elsewhere, dropped, kept.
@@ -236,19 +235,20 @@ class Pipeline:
         """
         if against is not None and (not isinstance(against, (tuple, list)) or len(against) != 2):
             raise InputTypeError("against: it must be (triangles, owners)")
-        if adjacent not in ADJACENT:
+        if _arrays.text(adjacent, "adjacent") not in ADJACENT:
             raise InputError(f"adjacent: {adjacent!r} is none of {', '.join(ADJACENT)}")
-        first = (_triangles(triangles), None if owners is None else _column(owners, "owners"))
+        first = (_triangles(triangles), None if owners is None else _integers(owners, "owners"))
         second = None
         if against is not None:
-            second = (_triangles(against[0]), None if against[1] is None else _column(against[1], "owners"))
-        self._pipeline.add_triangles(first, second, (ADJACENT.index(adjacent), _arrays.real(margin, "margin"), bool(features),
+            second = (_triangles(against[0]), None if against[1] is None else _integers(against[1], "owners"))
+        self._pipeline.add_triangles(first, second, (ADJACENT.index(adjacent), _arrays.margin_of(margin), bool(features),
                                                   _arrays.length(tolerance, "tolerance")))
         return self._added("exact triangle", second is not None)
 
-    def run(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
-            against_padding: Any = None, limit: Optional[int] = None, verify: bool = False, engine: Optional[Engine] = None,
-            sink: Optional[Callable[[Collisions], Any]] = None, progress: Progress = None, copy: bool = False) -> Collisions:
+    def run(self, boxes: ArrayLike, against: Optional[ArrayLike] = None, *, margin: float = 0, order: Order = "ascending",
+            padding: Optional[ArrayLike] = None, against_padding: Optional[ArrayLike] = None, limit: Optional[int] = None,
+            verify: bool = False, engine: Optional[Engine] = None, sink: Optional[Callable[[Collisions], Any]] = None,
+            progress: Progress = None, copy: bool = False) -> Collisions:
         """Finds pairs, filters them, and returns the collisions.
 
         Parameters are those of :func:`octopair.find_pairs`, and:
@@ -274,9 +274,9 @@ class Pipeline:
         return Collisions(**columns, summary=PipelineSummary._of(summary), names=_list(names),
                           against_names=_list(names if against is None else others))
 
-    def count(self, boxes: Any, against: Any = None, margin: float = 0, *, padding: Any = None, against_padding: Any = None,
-              limit: Optional[int] = None, verify: bool = False, engine: Optional[Engine] = None, progress: Progress = None,
-              copy: bool = False) -> PipelineSummary:
+    def count(self, boxes: ArrayLike, against: Optional[ArrayLike] = None, *, margin: float = 0, padding: Optional[ArrayLike] = None,
+              against_padding: Optional[ArrayLike] = None, limit: Optional[int] = None, verify: bool = False,
+              engine: Optional[Engine] = None, progress: Progress = None, copy: bool = False) -> PipelineSummary:
         """Like :meth:`run`, but only counts the collisions, and returns the summary."""
         self._check_join(against)
         data = _core.Input(*_arrays.join_input(boxes, against, (padding, against_padding), copy))
@@ -310,18 +310,17 @@ def _list(names: Optional[Sequence[str]]) -> Optional[list[str]]:
     return None if names is None else list(names)
 
 
-def _column(value: Any, name: str) -> Array:
-    """Returns numbers of objects as uint32."""
-    array = _arrays.array_of(value, name, copy=True)
-    if array.ndim != 1 or (array.size and array.dtype.kind not in "iu"):
-        raise InputTypeError(f"{name}: {array.dtype} of the shape {array.shape}; it must have integers of the shape (n,)")
-    if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
-        raise InputError(f"{name}: a number is below 0 or above 4294967295")
-    return np.ascontiguousarray(array, dtype=np.uint32)
+def _integers(value: Any, name: str) -> Array:
+    return _arrays.integers(value, name, (None,))
 
 
 def _triangles(value: Any) -> Array:
-    return _arrays.numbers(value, "triangles", (None, 3, 3), copy=True)
+    return _arrays.numbers(value, "triangles", (None, 3, 3))
+
+
+def _margin_hint(value: Any) -> str:
+    """Returns what to do about a number where a second set is expected."""
+    return f"; for a margin pass margin={value!r}" if isinstance(value, (int, float)) else ""
 
 
 def _core_engine(engine: Optional[Engine]) -> _core.Engine:
@@ -376,48 +375,50 @@ def collide(shapes: Shapes, against: Optional[Shapes] = None, *, margin: float =
     >>> table["class"], table.depth, table.distance
     (array(['penetrating', 'clearance'], dtype='<U11'), array([0.5, 0. ]), array([0. , 0.5]))
     """
+    if isinstance(against, (int, float)):
+        raise InputTypeError(f"against: {against!r} is not a Shapes{_margin_hint(against)}")
     first = shapes if isinstance(shapes, Shapes) else Shapes.from_trimesh(shapes)
     second = against if against is None or isinstance(against, Shapes) else Shapes.from_trimesh(against)
-    if stage not in ("objects", "features"):
+    if _arrays.text(stage, "stage") not in ("objects", "features"):
         raise InputError(f"stage: {stage!r} is neither 'objects' nor 'features'")
     pipeline = Pipeline()
     if keep is not None:
         pipeline.keep(keep)
-    pipeline.oriented_boxes(first, margin, second).exact_objects(first, margin, second)
+    pipeline.oriented_boxes(first, second, margin=margin).exact_objects(first, second, margin=margin)
     if stage == "features":
-        pipeline.exact_features(first, margin, second, max_contacts=max_contacts, tolerance=tolerance)
+        pipeline.exact_features(first, second, margin=margin, max_contacts=max_contacts, tolerance=tolerance)
     if min_depth is not None:
         if stage == "objects":
             raise UsageError("min_depth: the stage 'objects' computes no depth")
         pipeline.min_depth(min_depth)
     boxes = first.boxes(second)
     here, there = (boxes, None) if second is None else boxes
-    return pipeline.run(here, there, margin, order, padding=first.padding, against_padding=None if second is None else second.padding,
-                        limit=limit, engine=engine, progress=progress)
+    return pipeline.run(here, there, margin=margin, order=order, padding=first.padding,
+                        against_padding=None if second is None else second.padding, limit=limit, engine=engine, progress=progress)
 
 
 @overload
-def self_intersections(vertices: Any, faces: Any, *, adjacent: str = ..., margin: float = ..., features: Literal[False] = ...,
-                       tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
-                       progress: Progress = ...) -> Array: ...
+def self_intersections(vertices: ArrayLike, faces: ArrayLike, *, adjacent: Adjacent = ..., margin: float = ...,
+                       features: Literal[False] = ..., tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
+                       progress: Progress = ...) -> NDArray[np.uint32]: ...
 
 
 @overload
-def self_intersections(vertices: Any, faces: Any, *, adjacent: str = ..., margin: float = ..., features: Literal[True],
-                       tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
+def self_intersections(vertices: ArrayLike, faces: ArrayLike, *, adjacent: Adjacent = ..., margin: float = ...,
+                       features: Literal[True], tolerance: float = ..., limit: Optional[int] = ..., engine: Optional[Engine] = ...,
                        progress: Progress = ...) -> Collisions: ...
 
 
-def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_shared", margin: float = 0, features: bool = False,
-                       tolerance: float = 0, limit: Optional[int] = None, engine: Optional[Engine] = None,
-                       progress: Progress = None) -> Union[Array, Collisions]:
+def self_intersections(vertices: ArrayLike, faces: ArrayLike, *, adjacent: Adjacent = "beyond_shared", margin: float = 0,
+                       features: bool = False, tolerance: float = 0, limit: Optional[int] = None, engine: Optional[Engine] = None,
+                       progress: Progress = None) -> Union[NDArray[np.uint32], Collisions]:
     """Finds the triangles of a mesh that meet each other, with exact arithmetic.
 
     Parameters
     ----------
-    vertices : array, shape (n, 3)
-        Corners; converted to float64.
-    faces : array, shape (m, 3), integers
+    vertices : array-like, shape (n, 3)
+        Corners.
+    faces : array-like of integers, shape (m, 3)
         Triangles.
     adjacent, margin, tolerance
         As in :meth:`Pipeline.triangles`.
@@ -438,8 +439,8 @@ def self_intersections(vertices: Any, faces: Any, *, adjacent: str = "beyond_sha
     >>> op.self_intersections(vertices, [[0, 1, 2], [3, 4, 5]])
     array([[0, 1]], dtype=uint32)
     """
-    corners = _arrays.numbers(vertices, "vertices", (None, 3), copy=True)
-    numbers = face_array(faces)
+    corners = _arrays.numbers(vertices, "vertices", (None, 3))
+    numbers = _arrays.integers(faces, "faces", (None, 3))
     if numbers.size and numbers.max() >= len(corners):
         wrong = int(np.flatnonzero((numbers >= len(corners)).any(axis=1))[0])
         raise InputError(f"faces: triangle {wrong} has the vertex {numbers[wrong].max()} of {len(corners)}", wrong)

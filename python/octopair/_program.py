@@ -11,17 +11,18 @@ import signal
 import subprocess
 import sys
 import tempfile
-from typing import Any, Dict, List, Optional, Sequence, Union
+from typing import Any, Dict, List, Literal, Optional, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _arrays
 from ._arrays import Array
 from ._errors import EngineError, Error, FileError, InputError, ResourceLimitError, UsageError
-from ._options import path_text
+from ._options import Order, PathLike, path_text
 from ._results import html_table
 
-PathLike = Union[str, "os.PathLike[str]"]
+Stage = Literal["pairs", "objects", "features"]
 _OF_STATUS = {2: UsageError, 3: InputError, 4: FileError, 5: ResourceLimitError, 6: EngineError}
 
 
@@ -116,8 +117,22 @@ class Detection:
                                      ("time", f"{self.stats.get('seconds', {}).get('total', 0):.3f} s")])
 
 
-def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optional[str] = None, **options: Any) -> Detection:
+def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optional[Stage] = None,
+           objects: Optional[Literal["node", "triangle"]] = None, margin: Optional[float] = None, padding: Optional[PathLike] = None,
+           adjacent: Optional[Literal["beyond_shared", "beyond-shared", "exclude", "include"]] = None,
+           max_contacts: Optional[int] = None, tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None,
+           min_depth: Optional[float] = None, weld: Optional[float] = None, exclude: Optional[PathLike] = None,
+           same_parent: Optional[Literal["include", "exclude"]] = None, baseline: Optional[PathLike] = None,
+           report: Optional[PathLike] = None, up: Optional[Literal["y", "z"]] = None, unit: Optional[str] = None, events: bool = False,
+           index_type: Optional[Literal["uint32", "uint64"]] = None, order: Optional[Order] = None, limit: Optional[int] = None,
+           verify: bool = False, engine: Optional[str] = None, threads: Optional[int] = None, workers: Optional[int] = None,
+           token_file: Optional[PathLike] = None, token_in_clear: bool = False, server_user: Optional[str] = None, tls: bool = False,
+           tls_authority: Optional[PathLike] = None, tls_certificate: Optional[PathLike] = None, tls_key: Optional[PathLike] = None,
+           patience: Optional[float] = None) -> Detection:
     """Finds the colliding pairs of files, as ``octopair detect`` does it: boxes, mesh scenes, JSON scenes.
+
+    The keywords are the options of the command, with underscores; ``man octopair`` describes them. None and False: the default of the
+    command.
 
     Parameters
     ----------
@@ -127,28 +142,44 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
         File of a second set.
     stage : {"pairs", "objects", "features"}, optional
         How far down the pipeline. Default: pairs for boxes, objects for meshes.
-    **options
-        Options of the command with underscores: ``margin=0.1``, ``objects="triangle"``, ``same_parent="exclude"``, ``exclude="rules.json"``,
-        ``report="report.html"``, ``events=True``. See ``man octopair``.
+    objects : {"node", "triangle"}, optional
+        What counts as one object of a mesh file.
+    margin, padding
+        Largest gap at which a pair counts; file with the clearance of each object.
+    adjacent, max_contacts, tolerance, duplicate_tolerance, min_depth, weld
+        Options of the exact stages: :meth:`Pipeline.triangles`, :meth:`Pipeline.exact_features`, :meth:`Geometry.mesh`.
+    exclude, same_parent
+        File with rules on names; whether pairs of objects with the same parent are left out.
+    baseline, report, up, unit
+        File with an older result; page about the collisions, its upward axis, and its unit.
+    events : bool
+        True: only what began and ended, of a moving scene.
+    index_type, order, limit, verify
+        Form and number of the pairs; True: a second algorithm checks the result.
+    engine, threads, workers
+        ``"local"``, ``"processes"`` or an address of a server; number of threads or processes.
+    token_file, token_in_clear, server_user, tls, tls_authority, tls_certificate, tls_key, patience
+        Options of the connection to a server.
 
     Raises
     ------
     Error
         With the message of the program.
     """
+    options = locals()
+    del options["inputs"]
     if not inputs:
         raise UsageError("inputs: there must be at least one file")
     files = [_file(name, "inputs") for name in inputs]
-    for name in ("help", "output", "count_only", "stats", "quiet", "fail_on_collision"):
-        if name in options:
-            raise UsageError(f"{name}: detect() returns its result; run the program for this option")
+    if against is not None:
+        options["against"] = _file(against, "against")
+    if isinstance(adjacent, str):
+        options["adjacent"] = adjacent.replace("_", "-")
     with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
-        form = ".csv" if options.get("events") else ".jsonl" if _has_shapes(files) and stage != "pairs" else ".npy"
+        form = ".csv" if events else ".jsonl" if _has_shapes(files) and stage != "pairs" else ".npy"
         output, stats = os.path.join(folder, "found" + form), os.path.join(folder, "stats.json")
-        arguments = ["detect", *files, *_option("against", None if against is None else _file(against, "against")), *_option("stage", stage)]
-        for name, value in options.items():
-            arguments += _option(name, value)
-        _run([*arguments, "--quiet", "--output", output, "--stats", stats])
+        arguments = [argument for name, value in options.items() for argument in _option(name, value)]
+        _run(["detect", *files, *arguments, "--quiet", "--output", output, "--stats", stats])
         with open(stats, encoding="utf-8") as file:
             counts = json.load(file)
         if form == ".csv":
@@ -187,7 +218,7 @@ def _has_shapes(inputs: Sequence[str]) -> bool:
     return not any(name.lower().endswith((".npy", ".csv")) for name in inputs)
 
 
-def generate(kind: str, objects: int, seed: int = 0, *, frames: Optional[int] = None) -> Array:
+def generate(kind: str, objects: int, *, seed: int = 0, frames: Optional[int] = None) -> NDArray[np.float32]:
     """Returns the boxes of a sample scene, as ``octopair generate`` makes it.
 
     Parameters

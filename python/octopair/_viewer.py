@@ -67,6 +67,7 @@ class View:
                     "host": _arrays.text(host, "host"), "port": _arrays.whole(port, "port", 65535), "token": _arrays.text(token, "token"),
                     "frames_per_second": _arrays.real(frames_per_second, "frames_per_second")}
         self._view = _view.View(scene._scene, settings)
+        scene._views.add(self)
         if open_browser:
             webbrowser.open(self.address)
 
@@ -80,7 +81,7 @@ class View:
         """Number of pages that are connected."""
         return self._view.pages()
 
-    def show(self, step: StepResult, at_once: bool = False) -> None:
+    def show(self, step: StepResult, *, at_once: bool = False) -> None:
         """Shows the scene after a step: ``view.show(scene.step())``. Call it after each step, because it counts the events.
 
         Parameters

@@ -6,10 +6,11 @@ import dataclasses
 from typing import Any, Dict, List, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
 
 from . import _arrays, _core
 from ._errors import Error, UsageError, make
-from ._options import Order, call_options, float_dtype
+from ._options import Order, PathLike, call_options
 from ._progress import Progress, reporter
 from ._results import JobResult, Summary, html_table
 from ._scene import SceneCalls
@@ -22,9 +23,9 @@ except ImportError as error:
 __all__ = ["JobClient", "JobStatus", "RemoteScene", "client_options"]
 
 
-def client_options(*, token: str = "", server_user: str = "", token_in_clear: bool = False, owner: str = "", authority: str = "",
-                   certificate: str = "", key: str = "", tls: bool = False, connect_timeout: float = 5,
-                   patience: float = 30) -> Dict[str, Any]:
+def client_options(*, token: str = "", server_user: str = "", token_in_clear: bool = False, owner: str = "",
+                   authority: PathLike = "", certificate: PathLike = "", key: PathLike = "", tls: bool = False,
+                   connect_timeout: float = 5, patience: float = 30) -> Dict[str, Any]:
     """Returns the options of a connection. All functions that take an address take these options.
 
     Parameters
@@ -37,9 +38,9 @@ def client_options(*, token: str = "", server_user: str = "", token_in_clear: bo
         True: the token is also sent to loopback addresses without encryption.
     owner : str
         For operators: owner of the jobs that calls name.
-    authority : str
+    authority : path
         PEM file of a certificate authority; then the connection is encrypted.
-    certificate, key : str
+    certificate, key : path
         PEM files of this client's certificate and private key.
     tls : bool
         True: the connection is encrypted, and the system's trusted authorities count.
@@ -55,8 +56,8 @@ def client_options(*, token: str = "", server_user: str = "", token_in_clear: bo
             "patience": _arrays.real(patience, "patience")}
 
 
-def _connect(address: str, **client: Any) -> _core.Engine:
-    return _remote.connect(address, client_options(**client))
+def _connect(address: str, client: Dict[str, Any]) -> _core.Engine:
+    return _remote.connect(address, client)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -127,17 +128,21 @@ class JobClient:
     ----------
     address : str
         ``"unix:PATH"`` or ``"HOST:PORT"``.
-    **client
-        :func:`client_options`.
+    token, server_user, token_in_clear, owner, authority, certificate, key, tls, connect_timeout, patience
+        Options of the connection: :func:`client_options`.
     """
 
-    def __init__(self, address: str, **client: Any) -> None:
+    def __init__(self, address: str, *, token: str = "", server_user: str = "", token_in_clear: bool = False,
+                 owner: str = "", authority: PathLike = "", certificate: PathLike = "", key: PathLike = "", tls: bool = False,
+                 connect_timeout: float = 5, patience: float = 30) -> None:
+        client = client_options(token=token, server_user=server_user, token_in_clear=token_in_clear, owner=owner, authority=authority,
+                                certificate=certificate, key=key, tls=tls, connect_timeout=connect_timeout, patience=patience)
         self._address = _arrays.text(address, "address")
-        self._client = _remote.JobClient(address, client_options(**client))
+        self._client = _remote.JobClient(address, client)
 
-    def submit(self, boxes: Any, against: Any = None, margin: float = 0, order: Order = "ascending", *, padding: Any = None,
-               against_padding: Any = None, limit: Optional[int] = None, count_only: bool = False, id: str = "",
-               progress: Progress = None, copy: bool = False) -> str:
+    def submit(self, boxes: ArrayLike, against: Optional[ArrayLike] = None, *, margin: float = 0, order: Order = "ascending",
+               padding: Optional[ArrayLike] = None, against_padding: Optional[ArrayLike] = None, limit: Optional[int] = None,
+               count_only: bool = False, id: str = "", progress: Progress = None, copy: bool = False) -> str:
         """Stores a job on the server and returns its id. If a job with this id exists, no second job is made.
 
         Parameters are those of :func:`octopair.find_pairs`, and:
@@ -202,11 +207,14 @@ class RemoteScene(SceneCalls):
         Largest gap, per axis, at which a pair counts.
     dtype : {"float32", "float64"}
         dtype of the boxes.
-    **client
-        :func:`client_options`.
+    token, server_user, token_in_clear, owner, authority, certificate, key, tls, connect_timeout, patience
+        Options of the connection: :func:`client_options`.
     """
 
-    def __init__(self, address: str, margin: float = 0, dtype: Any = "float32", **client: Any) -> None:
-        self._dtype = float_dtype(dtype)
-        self._margin = _arrays.real(margin, "margin")
-        self._scene = _remote.Scene(_arrays.text(address, "address"), (self._dtype == np.float64, self._margin), client_options(**client))
+    def __init__(self, address: str, *, margin: float = 0, dtype: DTypeLike = "float32", token: str = "", server_user: str = "",
+                 token_in_clear: bool = False, owner: str = "", authority: PathLike = "", certificate: PathLike = "",
+                 key: PathLike = "", tls: bool = False, connect_timeout: float = 5, patience: float = 30) -> None:
+        client = client_options(token=token, server_user=server_user, token_in_clear=token_in_clear, owner=owner, authority=authority,
+                                certificate=certificate, key=key, tls=tls, connect_timeout=connect_timeout, patience=patience)
+        self._start(margin, dtype)
+        self._scene = _remote.Scene(_arrays.text(address, "address"), (self._dtype == np.float64, self._margin), client)

@@ -32,12 +32,12 @@ import numpy as np
 
 from . import _arrays
 from ._arrays import Array
+from ._collisions import Collisions
 from ._engine import Engine
 from ._errors import InputError, InputTypeError, UsageError
 from ._pipeline import Pipeline, collide
-from ._results import Collisions
 from ._scene import Scene
-from ._shapes import Geometry, Shapes, face_array
+from ._shapes import Geometry, Shapes
 
 __all__ = ["CollisionManager", "ContactData", "DistanceData", "PreparedMesh", "mesh_to_BVH", "mesh_to_convex", "scene_to_collision"]
 
@@ -152,7 +152,7 @@ class _Nearest(NamedTuple):
 def _matrix(transform: Any) -> Array:
     if transform is None:
         return np.eye(4)
-    matrix = np.array(_arrays.numbers(transform, "transform", (4, 4), copy=True))
+    matrix = np.array(_arrays.numbers(transform, "transform", (4, 4)))
     if not np.isfinite(matrix).all() or not np.array_equal(matrix[3], [0, 0, 0, 1]):
         raise InputError(f"transform: it must have finite numbers and the last row 0, 0, 0, 1:\n{matrix}")
     return matrix
@@ -172,8 +172,8 @@ def _prepared(mesh: Any, kind: Optional[str] = None) -> PreparedMesh:
         raise InputTypeError(f"mesh: a {type(mesh).__name__} has not both vertices and faces")
     if len(mesh.faces) == 0:
         raise InputError("mesh: it has no faces")
-    vertices = np.array(_arrays.numbers(mesh.vertices, "vertices", (None, 3), copy=True), dtype=np.float64)
-    faces = np.array(face_array(mesh.faces))
+    vertices = np.array(_arrays.numbers(mesh.vertices, "vertices", (None, 3)))
+    faces = np.array(_arrays.integers(mesh.faces, "faces", (None, 3)))
     for array in (vertices, faces):
         array.flags.writeable = False
     checked = Geometry.mesh(vertices, faces)

@@ -32,6 +32,7 @@ public:
         if (is_forked()) return;
         const Turn::Holder turn(turn_);
         engine_.reset();
+        list_ = PairList();
     }
     PairList& list() { return list_; }
     Turn& turn() { return turn_; }

@@ -24,27 +24,42 @@ expected = op.find_pairs(boxes)
 pairs, summary = engine.find_pairs(mine, return_summary=True)
 assert summary.pairs == len(expected) == engine.count_pairs(mine) and engine.last_costs()["objects"] == len(mine)
 compare(comm.gather(pairs) or [], expected)
-compare(comm.gather(engine.find_pairs(mine, my_others, 0.01, "octal")) or [], op.find_pairs(boxes, others, 0.01, "octal"))
+compare(comm.gather(engine.find_pairs(mine, my_others, margin=0.01, order="octal")) or [], op.find_pairs(boxes, others, margin=0.01, order="octal"))
 compare([engine.gather_pairs(mine)], expected)
 compare(comm.gather(engine.find_pairs64(mine)) or [], expected.astype(np.uint64))
 numbers = (np.arange(ends[comm.rank], ends[comm.rank + 1]) + 10**12).astype(np.uint64)
 compare(comm.gather(engine.find_pairs64(mine, indices=numbers)) or [], expected.astype(np.uint64) + np.uint64(10**12))
 
+spheres = np.hstack([boxes[:, :3], boxes[:, 3:4] - boxes[:, :1]])
+my_spheres = spheres[ends[comm.rank]:ends[comm.rank + 1]]
+compare(comm.gather(engine.find_pairs(my_spheres)) or [], op.find_pairs(spheres))
+compare(comm.gather(engine.find_pairs(mine.tolist(), np.asfortranarray(my_others))) or [], op.find_pairs(boxes, others))
+
 # An error of one rank is raised on all.
-if comm.rank == comm.size - 1:
-    mine = mine.copy()
-    mine[3] = np.nan
-try:
-    engine.find_pairs(mine)
-    raised = False
-except op.InputError:
-    raised = True
-if all(comm.allgather(raised)) and comm.rank == 0:
-    print("equal", flush=True)
+invalid, negative = mine.copy(), my_spheres.copy()
+invalid[3], negative[3, 3] = np.nan, -1
+calls = [lambda wrong: engine.find_pairs(invalid if wrong else mine), lambda wrong: engine.find_pairs(negative if wrong else my_spheres),
+         lambda wrong: engine.find_pairs(my_others, [["a"] * 6] if wrong else mine), lambda wrong: engine.gather_pairs(negative if wrong else mine),
+         lambda wrong: engine.find_pairs64(mine, indices=numbers[1:] if wrong else numbers), lambda wrong: engine.count_pairs(negative if wrong else mine)]
+for call in calls:
+    try:
+        call(comm.rank == comm.size - 1)
+        raised = False
+    except op.Error:
+        raised = True
+    if all(comm.allgather(raised)) and comm.rank == 0:
+        print("equal", flush=True)
 for wrong in (lambda: op.mpi_engine(3), lambda: engine.stream_pairs(mine)):
     try:
         wrong()
         sys.exit("no error")
     except op.Error:
         pass
-del engine
+with engine:
+    pass
+engine.close()
+try:
+    engine.find_pairs(mine)
+    sys.exit("no error")
+except op.UsageError:
+    pass

@@ -180,7 +180,8 @@ def test_a_fork_during_a_call_of_another_thread_is_refused():
     assert (output, code) == ("refused\n" * 4, 0)
 
 
-@pytest.mark.parametrize("use", ["e.find_pairs(b)", "op.find_pairs(b)", "s.step()", "op.Scene()", "j.wait()", "op.Engine('processes')"])
+@pytest.mark.parametrize("use", ["e.find_pairs(b)", "op.find_pairs(b)", "s.step()", "op.Scene()", "j.wait()", "op.Engine('processes')",
+                                 "j.add_done_callback(print)", "e.close(); s.close(); e.find_pairs(b)"])
 def test_a_fork_is_refused(use):
     output, _, code = run(f"""
         b = np.zeros((5000, 6), np.float32)
@@ -238,6 +239,9 @@ def test_spawn_works(tmp_path):
                                     "threading.Thread(target=f, daemon=True).start(); time.sleep(0.3)",
                                     "z = b[:10]; f = lambda: [op.find_pairs(z) for _ in iter(int, 1)]; "
                                     "[threading.Thread(target=f, daemon=True).start() for _ in range(4)]; time.sleep(0.3)",
+                                    "j = op.Engine().submit(b); j.add_done_callback(print)", "op.Engine().submit(b).add_done_callback(print)",
+                                    "e = op.Engine(); k = e.submit(b); j = e.submit(b[:2]); s = threading.Event(); "
+                                    "j.add_done_callback(lambda job: (s.set(), time.sleep(100))); k.cancel(); s.wait()",
                                     "s = op.Scene(); s.add(b[:9000]); s.step(); cycle = [s]; cycle.append(cycle)"])
 def test_the_interpreter_ends_in_the_middle_of_work(ending):
     output, _, code = run(f"b = np.zeros((100_000, 6), np.float32)\n{ending}\nprint('end')")

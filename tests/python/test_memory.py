@@ -30,7 +30,7 @@ def test_many_calls_do_not_grow():
             engine.submit(tiny).result()
             list(engine.stream_pairs(tiny))
             try:
-                op.find_pairs(boxes[::2])
+                op.find_pairs(boxes[:, :5])
             except op.Error:
                 pass
         for _ in range(calls // 1000):

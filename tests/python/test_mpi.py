@@ -14,4 +14,4 @@ def test_ranks_find_the_same_bytes(ranks, folder):
     found = subprocess.run(["mpirun", "-n", str(ranks), sys.executable, str(folder / "ranks.py")], capture_output=True, text=True,
                            timeout=120)
     assert found.returncode == 0, found.stdout + found.stderr
-    assert found.stdout.splitlines() == ["equal"] * 6
+    assert found.stdout.splitlines() == ["equal"] * 13

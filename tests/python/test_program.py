@@ -1,5 +1,7 @@
 """Files: detect, generate and replay run the program and raise its errors."""
+import inspect
 import json
+import re
 import subprocess
 import sys
 
@@ -8,6 +10,7 @@ import pytest
 from conftest import brute_force, random_boxes
 
 import octopair as op
+from octopair._program import program_path
 
 TETRAHEDRA = """o first
 v 0 0 0
@@ -35,7 +38,7 @@ def test_detects_boxes_in_files(tmp_path):
     np.save(tmp_path / "a.npy", boxes)
     np.save(tmp_path / "b.npy", others)
     found = op.detect(tmp_path / "a.npy", against=tmp_path / "b.npy", margin=0.01)
-    assert found.pairs.tobytes() == op.find_pairs(boxes, others, 0.01).tobytes()
+    assert found.pairs.tobytes() == op.find_pairs(boxes, others, margin=0.01).tobytes()
     assert found.collisions is None and found.stats["pairs"] == len(found.pairs) and not found.truncated
     assert op.detect(str(tmp_path / "a.npy"), limit=1).truncated
     both = op.detect(tmp_path / "a.npy", tmp_path / "b.npy", engine="processes", workers=2)
@@ -43,7 +46,7 @@ def test_detects_boxes_in_files(tmp_path):
 
 
 def test_detects_moving_boxes(tmp_path):
-    frames = op.generate("brownian", 500, 3, frames=4)
+    frames = op.generate("brownian", 500, seed=3, frames=4)
     assert frames.shape == (4, 500, 6)
     np.save(tmp_path / "moving.npy", frames)
     found = op.detect(tmp_path / "moving.npy")
@@ -72,14 +75,28 @@ def test_detects_meshes(tmp_path):
     assert op.detect(path, stage="pairs").pairs.tolist() == [[0, 1]]
     assert op.detect(path).pairs.tolist() == [[0, 1]]
     assert len(op.detect(path, objects="triangle").pairs) > 0
+    for adjacent in ("include", "beyond_shared", "beyond-shared"):
+        assert len(op.detect(path, objects="triangle", stage="objects", adjacent=adjacent).pairs) > 0
     assert op.detect(path, stage="objects", same_parent="include").pairs.tolist() == [[0, 1]]
     rules = tmp_path / "rules.json"
     rules.write_text(json.dumps({"exclude": [{"a": "*first*", "b": "*second*"}]}))
     assert len(op.detect(path, exclude=rules, stage="objects").pairs) == 0
 
 
+def test_detect_has_the_options_of_the_command():
+    shown = subprocess.run([program_path(), "detect", "--help"], capture_output=True, text=True, check=True).stdout
+    options = set(re.findall(r"^  (?:-\w,)?--([a-z-]+)", shown, re.MULTILINE))
+    assert {"margin", "same-parent", "help"} <= options
+    own = {"help", "output", "count-only", "stats", "quiet", "fail-on-collision"}  # detect() returns what these are for
+    parameters = {name: parameter for name, parameter in inspect.signature(op.detect).parameters.items() if name != "inputs"}
+    assert {name.replace("_", "-") for name in parameters} == options - own
+    assert {parameter.kind for parameter in parameters.values()} == {inspect.Parameter.KEYWORD_ONLY}
+    flags = set(re.findall(r"^  (?:-\w,)?--([a-z-]+)(?: Excludes: \S+)?(?:\s{2,}|\n)", shown, re.MULTILINE))
+    assert {name.replace("_", "-") for name, parameter in parameters.items() if parameter.default is False} == flags - own
+
+
 def test_generates_the_same_bytes(tmp_path):
-    assert op.generate("uniform", 1000, 7).tobytes() == op.generate("uniform", 1000, 7).tobytes()
+    assert op.generate("uniform", 1000, seed=7).tobytes() == op.generate("uniform", 1000, seed=7).tobytes()
     assert op.generate("uniform", 0).shape == (0, 6)
     with pytest.raises(op.UsageError, match="kind"):
         op.generate("circular", 10)
@@ -87,11 +104,11 @@ def test_generates_the_same_bytes(tmp_path):
 
 @pytest.mark.parametrize("call, kind, words", [
     (lambda p: op.detect(), op.UsageError, "file"), (lambda p: op.detect(p / "none.npy"), op.FileError, "none.npy"),
-    (lambda p: op.detect(p / "bad.npy"), op.InputError, "object 1"), (lambda p: op.detect(p / "bad.npy", nonsense=3), op.UsageError, "nonsense"),
+    (lambda p: op.detect(p / "bad.npy"), op.InputError, "object 1"), (lambda p: op.detect(p / "bad.npy", nonsense=3), TypeError, "nonsense"),
     (lambda p: op.detect(5), TypeError, "path"), (lambda p: op.detect("--help"), op.InputError, "help"),
     (lambda p: op.detect("a\0b.npy"), op.InputError, "character"), (lambda p: op.generate("--help", 5), op.UsageError, "help"),
-    (lambda p: op.detect(p / "bad.npy", help=True), op.UsageError, "help"), (lambda p: op.generate(None, 5), TypeError, "kind"),
-    (lambda p: op.detect(p / "bad.npy", output="x.npy"), op.UsageError, "output"), (lambda p: op.replay(p / "bad.npy"), op.InputError, "bad.npy"),
+    (lambda p: op.detect(p / "bad.npy", help=True), TypeError, "help"), (lambda p: op.generate(None, 5), TypeError, "kind"),
+    (lambda p: op.detect(p / "bad.npy", output="x.npy"), TypeError, "output"), (lambda p: op.replay(p / "bad.npy"), op.InputError, "bad.npy"),
     (lambda p: op.generate("uniform", -1), op.Error, "objects")])
 def test_raises_the_errors_of_the_program(call, kind, words, tmp_path):
     np.save(tmp_path / "bad.npy", np.array([[0, 0, 0, 1, 1, 1], [0, 0, 0, -1, 1, 1.0]]))

@@ -1,4 +1,5 @@
 """Servers: detached jobs, and errors of connections."""
+import asyncio
 import threading
 
 import numpy as np
@@ -55,6 +56,25 @@ def test_threads_share_a_client():
         for thread in threads:
             thread.join()
         assert good == [True] * 8
+
+
+def test_jobs_of_a_connection_can_be_awaited_and_it_can_be_closed():
+    boxes = random_boxes(500)
+
+    async def search():
+        with op.Engine(address, patience=5) as engine:
+            result = await engine.submit(boxes)
+            assert result.pairs.tobytes() == op.find_pairs(boxes).tobytes()
+            crowd = engine.submit(np.zeros((200_000, 6), np.float32), limit=10**9)
+            with pytest.raises(asyncio.TimeoutError):
+                await asyncio.wait_for(crowd, 0.05)
+            assert crowd.wait(60) and crowd.state == "cancelled"
+        with pytest.raises(op.UsageError, match="the engine is closed"):
+            engine.find_pairs(boxes)
+        assert "closed" in repr(engine)
+
+    with serving() as address:
+        asyncio.run(search())
 
 
 def test_errors_of_connections(tmp_path):

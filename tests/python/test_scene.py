@@ -17,7 +17,7 @@ def make_scene(request):
         return
     from octopair.remote import RemoteScene
     with serving() as address:
-        yield lambda *arguments, **options: RemoteScene(address, *arguments, **options)
+        yield lambda **options: RemoteScene(address, **options)
 
 
 class World:
@@ -51,7 +51,7 @@ def difference(first, second):
 def test_equal_to_brute_force(make_scene, dtype, seed):
     rng = np.random.default_rng(seed)
     margin = 0.0625 * seed
-    scene, world = make_scene(margin, dtype), World()
+    scene, world = make_scene(margin=margin, dtype=dtype), World()
     alive = np.empty(0, op.id_dtype)
     before = np.empty((0, 2), np.uint32)
     for step in range(25):
@@ -182,17 +182,95 @@ def test_refuses_wrong_calls(make_scene):
     scene = make_scene()
     ids = scene.add(random_boxes(4))
     cases = [lambda: scene.add(random_boxes(4, dtype=np.float64)), lambda: scene.move(ids, random_boxes(3)),
-             lambda: scene.move(ids["index"], random_boxes(4)), lambda: scene.move(ids[::2], random_boxes(2)),
+             lambda: scene.move(ids["index"] + 0.5, random_boxes(4)), lambda: scene.move(ids[::2], random_boxes(3)),
              lambda: scene.move(np.array([(77, 0)], op.id_dtype), random_boxes(1)),
              lambda: scene.add(random_boxes(4), groups=-1), lambda: scene.add(random_boxes(4), groups=np.array([1.5, 1, 1, 1]), copy=True),
              lambda: scene.add(random_boxes(4), mask=np.array([2**32, 1, 1, 1]), copy=True), lambda: scene.add(random_boxes(4), fixed=np.zeros(4, int)),
              lambda: scene.add(random_boxes(4), groups=np.zeros(3, np.uint32)), lambda: scene.ids([99]), lambda: scene.ids([-1]),
-             lambda: make_scene(-1), lambda: make_scene(dtype="int32"), lambda: scene.remove(np.concatenate([ids, ids]))]
+             lambda: make_scene(margin=-1), lambda: make_scene(dtype="int32"), lambda: scene.remove(np.concatenate([ids, ids]))]
     for case in cases:
         with pytest.raises(op.Error):
             case()
     assert len(scene) == 4 and scene.contains(ids).all()
     assert scene.add(random_boxes(4, dtype=np.float64), copy=True).shape == (4,)
+
+
+@pytest.mark.parametrize("named", [lambda ids: ids["index"], lambda ids: ids["index"].tolist(), lambda ids: tuple(map(int, ids["index"])),
+                                   lambda ids: ids["index"].astype(np.int64)[::-1][::-1], lambda ids: [ids[i] for i in range(len(ids))],
+                                   lambda ids: np.repeat(ids, 2)[::2]])
+def test_objects_are_named_by_indices_or_ids(make_scene, named):
+    boxes, others = random_boxes(30, size=0.3), random_boxes(30, seed=2, size=0.3)
+    scene, other = make_scene(), make_scene()
+    ids = scene.add(boxes)
+    assert np.array_equal(other.add(boxes), ids)
+    for step in range(3):
+        some, gone = ids[step:12], ids[12 + step:13 + step]
+        scene.move(named(some), others[step:12])
+        other.move(some, others[step:12])
+        scene.sweep(named(ids[20:25]), others[20:25])
+        other.sweep(ids[20:25], others[20:25])
+        scene.set_traits(named(ids[25:]), fixed=True)
+        other.set_traits(ids[25:], fixed=True)
+        scene.remove(named(gone))
+        other.remove(gone)
+        assert not scene.contains(named(gone)).any() and scene.contains(named(some)).all()
+        result, expected = scene.step(), other.step()
+        assert np.array_equal(result.began, expected.began) and np.array_equal(result.ended, expected.ended)
+
+
+def test_an_index_stands_for_the_object_that_has_it_now(make_scene):
+    scene = make_scene()
+    ids = scene.add(random_boxes(3))
+    scene.remove(1)
+    scene.remove(ids[0])
+    assert scene.contains([0, 1, 2, 99]).tolist() == [False, False, True, False] and scene.contains(2).tolist() == [True]
+    for call in (lambda: scene.move([2, 1], random_boxes(2)), lambda: scene.remove([2, 1]), lambda: scene.sweep((2, 1), random_boxes(2)),
+                 lambda: scene.set_traits(np.array([2, 1]), fixed=True), lambda: scene.ids_at([2, 1]), lambda: scene.ids([2, 1])):
+        with pytest.raises(op.InputError, match="no object has the index 1") as caught:
+            call()
+        assert caught.value.index == 1 and len(scene) == 1
+    scene.step()
+    again = scene.add(random_boxes(2))
+    assert sorted(again["index"]) == [0, 1]  # as before, with other generations
+    assert np.array_equal(scene.ids_at(again["index"]), again) and np.array_equal(scene.ids(again["index"].tolist()), again)
+    assert scene.contains([0, 1]).all() and not scene.contains(ids[:2]).any()
+    scene.move(1, random_boxes(1))
+    with pytest.raises(op.InputError):
+        scene.move(ids[1], random_boxes(1))
+
+
+@pytest.mark.parametrize("wrong, words", [([0.0], "ids_at"), ([True, False, True], "mask"), (["a"], "ids_at"), ([-1], r"ids\[0\] is -1"),
+                                          ([2**32], r"ids\[0\]"), ([[0, 1]], "shape"), (None, "NoneType"), ("a", "str"), (1.5, "number")])
+def test_refuses_other_ids(make_scene, wrong, words):
+    scene = make_scene()
+    scene.add(random_boxes(3))
+    for call in (lambda: scene.move(wrong, random_boxes(1)), lambda: scene.remove(wrong), lambda: scene.contains(wrong)):
+        with pytest.raises(op.Error, match=words):
+            call()
+
+
+def test_scenes_end(make_scene, tmp_path):
+    options = {"recording": tmp_path / "scene.rec"} if make_scene is op.Scene else {}
+    with pytest.raises(KeyError):
+        with make_scene(**options) as scene:
+            ids = scene.add(random_boxes(50, size=0.3))
+            step = scene.step()
+            raise KeyError
+    if options:
+        op.replay(options["recording"])
+    assert np.array_equal(step.began, brute_force(random_boxes(50, size=0.3)))
+    scene.close()
+    calls = [scene.step, scene.pairs, scene.persisting, lambda: len(scene), lambda: scene.indices, lambda: scene.add(random_boxes(1)),
+             lambda: scene.move(ids, random_boxes(50)), lambda: scene.move([0], random_boxes(1)), lambda: scene.sweep(ids, random_boxes(50)),
+             lambda: scene.remove(ids), lambda: scene.contains(ids), lambda: scene.contains([0]), lambda: scene.ids_at([0]),
+             lambda: scene.set_traits(ids, fixed=True)]
+    if options:
+        calls += [scene.boxes, scene.octants, scene.verify, scene.enlarged_pairs, lambda: scene.nearest([0, 0, 0]),
+                  lambda: scene.overlaps([0, 0, 0, 1]), lambda: scene.first_hits([0, 0, 0], [1, 0, 0])]
+    for call in calls:
+        with pytest.raises(op.UsageError, match="the scene is closed"):
+            call()
+    assert repr(scene).endswith("Scene(closed, dtype='float32', margin=0)")
 
 
 def test_queries_are_equal_to_brute_force():

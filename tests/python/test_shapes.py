@@ -125,7 +125,7 @@ def test_filters():
         (op.Pipeline().column_rules({"name": names, "parity": ["odd" if i % 2 else "" for i in range(400)]},
                                     [({"name": "wall*", "parity": "odd"}, {"name": "pipe*"})]),
          ~((is_wall[a] & (a % 2 == 1) & ~is_wall[b]) | (is_wall[b] & (b % 2 == 1) & ~is_wall[a]))),
-        (op.Pipeline().keep(lambda batch: (batch.a + batch.b) % 2 == 0, "even"), (a + b) % 2 == 0),
+        (op.Pipeline().keep(lambda batch: (batch.a + batch.b) % 2 == 0, name="even"), (a + b) % 2 == 0),
     ]
     for pipeline, kept in cases:
         found = pipeline.run(boxes)
@@ -195,7 +195,7 @@ def test_filters_refuse_boxes_without_shapes():
             add(op.Pipeline()).run(np.zeros((5, 6)))
         with pytest.raises(op.UsageError, match="second set"):
             add(op.Pipeline()).run(np.zeros((4, 6)), np.zeros((4, 6)))
-    joined = op.Pipeline().exact_objects(balls, 0, balls)
+    joined = op.Pipeline().exact_objects(balls, balls)
     assert joined.count(np.zeros((4, 6)), np.zeros((4, 6))).collisions == 16
     for boxes in ((np.zeros((4, 6)), np.zeros((5, 6))), (np.zeros((5, 6)), np.zeros((4, 6)))):
         with pytest.raises(op.InputError):
@@ -243,7 +243,7 @@ def test_tables_are_right_at_their_edges():
     assert op.collide(plain, named).columns()["name_b"].tolist() == ["a", "a"]
     table = op.collide(plain)
     assert table.contacts(-1) == table.contacts(0) == slice(0, 1) and (table == table) is True and hash(table)
-    for wrong in (lambda: table.contacts(1), lambda: table["nonsense"], lambda: table[0]):
+    for wrong in (lambda: table.contacts(1), lambda: table["nonsense"], lambda: table[1], lambda: table[-2]):
         with pytest.raises(LookupError):
             wrong()
     with pytest.raises(ValueError):
@@ -254,12 +254,12 @@ def test_tables_are_right_at_their_edges():
                   lambda: op.Pipeline().bounding_spheres(None), lambda: op.Pipeline().groups([1], [1], against=3),
                   lambda: op.Pipeline().column_rules(3, []), lambda: op.Pipeline().column_rules({"n": None}, []),
                   lambda: op.Pipeline().column_rules({}, []), lambda: op.Pipeline().column_rules({"n": "abc"}, []),
-                  lambda: op.Pipeline().column_rules({"n": ["a"]}, None), lambda: op.Pipeline().column_rules({"n": ["a"]}, [], 3),
+                  lambda: op.Pipeline().column_rules({"n": ["a"]}, None), lambda: op.Pipeline().column_rules({"n": ["a"]}, [], against=3),
                   lambda: op.Pipeline().name_rules(None, []), lambda: op.Pipeline().name_rules("abc", []),
                   lambda: op.Pipeline().name_rules(["\ud800"], []), lambda: op.Pipeline().name_rules(["a"], 3), lambda: plain.boxes(3),
                   lambda: op.Pipeline().column_rules({"n": ["a"]}, [({"x": "a"}, {})]), lambda: op.Pipeline().column_rules({"n": ["a"]}, [3]),
                   lambda: op.Pipeline().column_rules({"n": ["a"], "m": []}, []), lambda: op.Pipeline().column_rules({"n": [1]}, []),
-                  lambda: op.Pipeline().column_rules({"n": ["a"]}, [], {"m": ["a"]}), lambda: op.Pipeline().name_rules([1], []), lambda: op.Pipeline().name_rules(["a"], [("a",)]),
+                  lambda: op.Pipeline().column_rules({"n": ["a"]}, [], against={"m": ["a"]}), lambda: op.Pipeline().name_rules([1], []), lambda: op.Pipeline().name_rules(["a"], [("a",)]),
                   lambda: op.Pipeline().run(np.zeros((2, 6)), sink=5), lambda: op.Geometry.sphere(10**400)):
         with pytest.raises(op.Error):
             wrong()

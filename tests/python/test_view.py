@@ -117,6 +117,17 @@ def test_errors():
     assert view.pages == 0
 
 
+def test_the_end_of_a_scene_closes_its_views():
+    with op.Scene() as scene:
+        view = op.View(scene)
+        view.show(scene.step())
+    with pytest.raises(op.UsageError, match="the view is closed"):
+        view.address
+    view.close()
+    with pytest.raises(op.UsageError, match="the scene is closed"):
+        op.View(scene)
+
+
 def test_view_keeps_its_scene():
     view = op.View(op.Scene())
     assert b"live" in get(view, "view.json")

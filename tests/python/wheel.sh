@@ -48,7 +48,7 @@ if compgen -G "$package/lib/libmpi*" > /dev/null; then fail "the wheel contains 
 
 "$work/fresh/bin/python" - << 'END'
 import numpy as np, octopair as op, octopair.trimesh
-boxes = op.generate("uniform", 5000, 1)
+boxes = op.generate("uniform", 5000, seed=1)
 expected = op.find_pairs(boxes)
 assert len(expected) > 1000
 assert op.Engine("processes", workers=2).find_pairs(boxes).tobytes() == expected.tobytes()
