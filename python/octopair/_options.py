@@ -21,7 +21,7 @@ def call_options(margin: float = 0, order: str = "ascending", limit: Optional[in
                  buffer_bytes: Optional[int] = None) -> _core.Options:
     """Returns the options of a call."""
     if type(margin) is not float:
-        margin = _arrays.margin_of(margin)
+        margin = 0.0 if type(margin) is int and margin == 0 else _arrays.margin_of(margin)  # the usual case first
     if margin == 0 and isinstance(order, str) and order == "ascending" and limit is None and not verify and buffer_bytes is None:
         return _DEFAULT_OPTIONS
     options = _core.Options()
