@@ -18,7 +18,7 @@ DESIGN = "docs/design.md"
 
 # Layers from the bottom up: their purpose, and their public headers.
 LAYERS = {
-    "base": ("errors, buffers, checked casts", ["error"]),
+    "base": ("errors, buffers, checked casts", ["error", "limits"]),
     "parallel": ("threads; the only layer that uses oneTBB", []),
     "geometry": ("points, vectors, poses", ["pose"]),
     "boxes": ("boxes, pairs, and the rule of pairs", ["box_array", "input", "objects", "options", "spheres", "summary"]),

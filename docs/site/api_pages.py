@@ -10,7 +10,7 @@ COMPONENTS = [
     ("core", "octopair: boxes to pairs", "CMake target `octopair::octopair`. Engines find the pairs of boxes; a `Scene` keeps "
      "objects from step to step.",
      ["octopair", "engine", "objects", "spheres", "input", "options", "pair_list", "summary", "box_array", "job", "scene", "queries", "pose",
-      "octal_code", "octants", "error"]),
+      "octal_code", "octants", "limits", "error"]),
     ("pipeline", "pipeline: filters and exact tests", "CMake target `octopair::pipeline`. Filters run behind any engine. Exact "
      "tests of shapes return contacts and depth.",
      ["pipeline", "filters", "shapes", "collision"]),

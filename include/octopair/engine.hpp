@@ -26,6 +26,7 @@
 #include "octopair/box_array.hpp"
 #include "octopair/input.hpp"
 #include "octopair/job.hpp"
+#include "octopair/limits.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/options.hpp"
 #include "octopair/pair_list.hpp"
@@ -98,7 +99,7 @@ private:
 };
 
 /// Returns an engine that uses `threads` threads of this process; 0: one per core that the process may use (taskset(1), control
-/// groups).
+/// groups). Throws: Error{usage} for more than max_threads.
 std::unique_ptr<Engine> make_local_engine(unsigned threads = 0);
 
 /// Returns the pairs of `boxes`, found by a temporary local engine. For repeated calls keep an Engine: it reuses its memory.

@@ -32,7 +32,7 @@
 namespace [[gnu::visibility("default")]] octopair {
 
 struct MpiOptions {
-    unsigned threads = 1;  ///< threads of each rank; 0: one per core
+    unsigned threads = 1;  ///< threads of each rank, at most max_threads; 0: one per core
 };
 
 /// Returns an engine that uses a duplicate of `comm`. Collective.

@@ -14,6 +14,7 @@
 #include "octopair/error.hpp"
 #include "octopair/input.hpp"
 #include "octopair/job.hpp"
+#include "octopair/limits.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/octal_code.hpp"
 #include "octopair/octants.hpp"

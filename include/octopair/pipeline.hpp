@@ -141,6 +141,7 @@ using CollisionSink = std::function<void(const Batch&)>;
 class Pipeline {
 public:
     /// Makes an empty pipeline that runs filters on `threads` threads; 0: one per core.
+    /// Throws: Error{usage} for more than max_threads.
     explicit Pipeline(unsigned threads = 0);
     Pipeline(Pipeline&&) noexcept;
     Pipeline& operator=(Pipeline&&) noexcept;

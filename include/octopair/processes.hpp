@@ -18,6 +18,7 @@
 #include <string>
 
 #include "octopair/engine.hpp"
+#include "octopair/limits.hpp"
 
 /// Path of octopair-worker in the installed octopair package. CMake defines it for targets that link octopair::processes of an
 /// installed octopair.
@@ -28,7 +29,7 @@
 namespace [[gnu::visibility("default")]] octopair {
 
 struct ProcessOptions {
-    unsigned workers = 0;  ///< number of workers, at most 256; 0: one per core
+    unsigned workers = 0;  ///< number of workers, at most max_workers; 0: one per core
     /// Path of octopair-worker, of the same version. If empty, the path in the environment variable OCTOPAIR_WORKER. If that is
     /// not set either, the first octopair-worker found in: the folder of the application's program; ../libexec/octopair from
     /// there; the installation of this library; the package; the configured installation; the build tree.
@@ -43,8 +44,8 @@ struct PackagedWorker {
 }  // namespace detail
 
 /// Starts the workers and returns their engine. Callers leave `package` at its default.
-/// Throws: Error{engine_failed} if the workers cannot be started; Error{resource_limit} if the system runs out of processes,
-/// descriptors or memory.
+/// Throws: Error{usage} for more than max_workers; Error{engine_failed} if the workers cannot be started; Error{resource_limit} if
+/// the system runs out of processes, descriptors or memory.
 std::unique_ptr<Engine> make_process_engine(const ProcessOptions& options,
                                             detail::PackagedWorker package = {OCTOPAIR_WORKER_PROGRAM});
 std::unique_ptr<Engine> make_process_engine(unsigned workers = 0,

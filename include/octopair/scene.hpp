@@ -57,7 +57,7 @@ struct Traits {
 enum class Precision : std::uint8_t { float32, float64 };
 
 struct SceneOptions {
-    unsigned threads = 0;  ///< 0: one per core
+    unsigned threads = 0;  ///< at most max_threads; 0: one per core
     Precision precision = Precision::float32;
     double margin = 0;  ///< as in Options
     /// Path of a file that records all calls, for `octopair replay` (docs/formats.md); empty: none. An existing file is

@@ -6,17 +6,26 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "base/control_group.hpp"
+#include "octopair/error.hpp"
+#include "octopair/limits.hpp"
 #include "parallel/tbb_threads.hpp"
 
 namespace octopair {
 
-namespace {
+unsigned thread_count(unsigned requested) {
+    if (requested > max_threads) {
+        throw Error(ErrorCode::usage, "threads: " + std::to_string(requested) + " is not in the range 0 to " +
+                                          std::to_string(max_threads));
+    }
+    return requested > 0 ? requested : std::min(available_cores(), max_threads);
+}
 
-unsigned thread_count(unsigned requested) { return requested > 0 ? requested : available_cores(); }
+namespace {
 
 /// Keeps TbbThreads that no team uses any more, by their number of threads, for later teams. oneTBB 2021.8 never frees about 7 KB of each
 /// arena that threads have entered. So without reuse, a program that makes an engine for each call would need more and more memory.

@@ -16,9 +16,13 @@ namespace octopair {
 
 class TbbThreads;
 
+/// Returns the number of threads for a request: `requested`, or one per core for 0.
+/// Throws: Error{usage} for more than max_threads (octopair/limits.hpp).
+OCTOPAIR_PRIVATE_EXPORT unsigned thread_count(unsigned requested);
+
 class OCTOPAIR_PRIVATE_EXPORT Team {
 public:
-    /// Makes a team of `threads` threads, the calling thread included; 0: one per core.
+    /// Makes a team of thread_count(threads) threads, the calling thread included. Throws: as thread_count().
     explicit Team(unsigned threads);
     ~Team();
 

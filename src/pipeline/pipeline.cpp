@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "base/call_scope.hpp"
-#include "base/control_group.hpp"
 #include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
 #include "octopair/error.hpp"
+#include "parallel/team.hpp"
 #include "pipeline/batch_access.hpp"
 #include "pipeline/block_ring.hpp"
 
@@ -277,7 +277,7 @@ private:
     }
 };
 
-Pipeline::Pipeline(unsigned threads) : state_(std::make_unique<State>(threads > 0 ? threads : available_cores())) {}
+Pipeline::Pipeline(unsigned threads) : state_(std::make_unique<State>(thread_count(threads))) {}
 
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;

@@ -1,4 +1,4 @@
-// Tests Team: every index runs once, workers have separate numbers, exceptions propagate, helpers take part.
+// Tests Team: the limit of threads; every index runs once, workers have separate numbers, exceptions propagate, helpers take part.
 #include "parallel/team.hpp"
 
 #include <gtest/gtest.h>
@@ -6,9 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "octopair/octopair.hpp"
+#include "support/errors.hpp"
 #include "support/peak_memory.hpp"
 
 namespace octopair::test {
@@ -97,6 +100,15 @@ TEST(Team, ManyTeamsOneAfterAnotherTakeNoMemory) {
 }
 
 TEST(Team, HasAThreadForEachCoreByDefault) { EXPECT_GE(Team(0).threads(), 1u); }
+
+TEST(ThreadLimit, IsOneForAllUsers) {
+    const std::string message = "threads: 4097 is not in the range 0 to 4096";
+    EXPECT_EQ(error_of(ErrorCode::usage, [] { (void)make_local_engine(max_threads + 1); }), message);
+    EXPECT_EQ(error_of(ErrorCode::usage, [] { Scene scene({.threads = max_threads + 1}); }), message);
+    EXPECT_EQ(error_of(ErrorCode::usage, [] { Team team(max_threads + 1); }), message);
+    EXPECT_EQ(thread_count(max_threads), max_threads);
+    EXPECT_GE(thread_count(0), 1u);
+}
 
 }  // namespace
 }  // namespace octopair::test

@@ -13,6 +13,7 @@
 #include "pipeline/flow.hpp"
 #include "support/calls.hpp"
 #include "support/compare.hpp"
+#include "support/errors.hpp"
 
 namespace octopair::test {
 namespace {
@@ -331,6 +332,11 @@ TEST(Pipeline, FiltersOnAllItsThreadsAtOnce) {
         pipeline.run(*make_local_engine(2), all_of(boxes), {}, options);
         EXPECT_TRUE(meeting.met());
     }
+}
+
+TEST(Pipeline, HasTheLimitOfThreadsOfAnEngine) {
+    EXPECT_EQ(error_of(ErrorCode::usage, [] { (void)Pipeline(max_threads + 1); }),
+              "threads: 4097 is not in the range 0 to 4096");
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ std::string find_worker_program(const std::string& requested, const std::string&
 
 unsigned worker_count(unsigned requested) {
     if (requested > max_workers) {
-        throw Error(ErrorCode::usage, std::to_string(requested) + " workers; at most " + std::to_string(max_workers));
+        throw Error(ErrorCode::usage, "workers: " + std::to_string(requested) + " is not in the range 0 to " +
+                                          std::to_string(max_workers));
     }
     return requested > 0 ? requested : std::min(available_cores(), max_workers);
 }

@@ -26,11 +26,11 @@
 
 #include "engine/bucket_sort.hpp"
 #include "engine/processes/shared_memory/event_count.hpp"
+#include "octopair/limits.hpp"
 #include "octopair/objects.hpp"
 
 namespace octopair {
 
-inline constexpr unsigned max_workers = 256;
 inline constexpr std::uint64_t control_mark = 0x6f63746f70616972;  // "octopair"
 inline constexpr std::uint32_t layout_version = 7;                 // raised with every change of the layout
 
