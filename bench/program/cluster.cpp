@@ -63,9 +63,7 @@ void add_arrangement(Command& command, const std::shared_ptr<ClusterRequest>& re
                     request->plan.arrangements.push_back(cluster::arrangement_of(name));
                 }
             },
-            "shared (default): ranks share all steps; space, blocks: the same, with objects that are already near each "
-            "other; paper: "
-            "rank 0 distributes, merges and scans; or several of them")
+            "shared (default), space, blocks (with near objects on each rank), paper (rank 0 distributes); or several")
         .type_name("WORD");
     command
         .add_option(
@@ -91,6 +89,7 @@ void add_cluster(Command& program, Action& action) {
     add_mpirun(command, request->plan.mpirun);
     add_output_options(command, request->output, "write the costs of every rank as JSON");
     command.add_option("--on-ranks", request->on_ranks).hide();
+    command.set_examples({"octopair-bench cluster --ranks 1 2 4 --json cluster.json"});
     command.callback([request, &action] { action = [request] { return run_cluster(*request); }; });
 }
 

@@ -12,6 +12,7 @@ int run(int argc, char** argv) {
     cli::CommandLine line("octopair-bench", "Measures octopair on this machine.", "octopair-bench " OCTOPAIR_VERSION);
     Command program = line.program();
     program.require_subcommand();
+    program.set_examples({"octopair-bench paper --threads 2 --json paper.json"});
     Action action;
     add_paper(program, action);
 #ifdef OCTOPAIR_WITH_MPI

@@ -49,7 +49,7 @@ inline void add_scenes(cli::Command& command, std::vector<std::string>& scenes) 
         .add_option(
             "--scene",
             [&scenes](const std::vector<std::string>& kinds) {
-                for (const std::string& kind : kinds) (void)samples::scene_description(kind);
+                for (const std::string& kind : kinds) cli::check_value("--scene", samples::scene_kinds(), kind);
                 scenes = kinds;
             },
             "scene kinds of octopair generate (default uniform)")

@@ -81,10 +81,7 @@ void add_plan_options(Command& command, PaperRequest& request) {
         .type_name("N");
     command
         .add_option(
-            "--threads",
-            [&request](const std::string& text) {
-                request.plan.threads = unsigned(cli::parse_count("--threads", text, cli::max_threads));
-            },
+            "--threads", [&request](const std::string& text) { request.plan.threads = cli::parse_threads(text); },
             "measure on 1 to K processors (default 0: all cores)")
         .type_name("K");
     command
@@ -106,7 +103,7 @@ void add_paper(Command& program, Action& action) {
         .add_option(
             "--scene",
             [request](const std::string& kind) {
-                (void)samples::scene_description(kind);
+                cli::check_value("--scene", samples::scene_kinds(), kind);
                 request->plan.scene = kind;
             },
             "scene kind of octopair generate (default uniform)")
@@ -116,6 +113,8 @@ void add_paper(Command& program, Action& action) {
     add_machines_options(command, request->machines);
 #endif
     add_output_options(command, request->output, "write every measured time as JSON");
+    command.set_examples(
+        {"octopair-bench paper --threads 2 --json paper.json", "octopair-bench paper --machines 1 5 10 15 20"});
     command.callback([request, &action] { action = [request] { return run_paper(*request); }; });
 }
 

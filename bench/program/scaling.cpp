@@ -9,6 +9,7 @@
 
 #include "cli/command/interrupt.hpp"
 #include "octopair/error.hpp"
+#include "octopair/limits.hpp"
 #include "program/on_ranks.hpp"
 #include "program/options.hpp"
 #include "program/study_output.hpp"
@@ -42,13 +43,12 @@ void complete(std::vector<unsigned>& numbers) {
 }
 
 int run_scaling(ScalingRequest request) {
-    using cli::max_threads;
     if (request.plan.cores.empty()) {
         request.plan.cores = scaling::doubled(std::clamp(std::thread::hardware_concurrency(), 1u, max_threads));
     }
     if (const unsigned most = request.plan.cores.back(); most > max_threads) {
         throw Error(ErrorCode::usage,
-                    "--cores: " + std::to_string(most) + " is more than " + std::to_string(max_threads));
+                    "--cores: " + std::to_string(most) + " is not in the range 1 to " + std::to_string(max_threads));
     }
     complete(request.plan.cores);
     complete(request.plan.threads_per_rank);
@@ -81,6 +81,7 @@ void add_scaling(Command& program, Action& action) {
     add_mpirun(command, request->plan.mpirun);
     add_output_options(command, request->output, "write every measured time as JSON");
     command.add_option("--on-ranks", request->on_ranks).hide();
+    command.set_examples({"octopair-bench scaling --objects 1000000"});
     command.callback([request, &action] { action = [request] { return run_scaling(*request); }; });
 }
 

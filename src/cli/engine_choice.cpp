@@ -11,13 +11,12 @@
 #include "cli/command/option_values.hpp"
 #include "octopair/client.hpp"
 #include "octopair/error.hpp"
+#include "octopair/limits.hpp"
 #include "octopair/processes.hpp"
 
 namespace octopair::cli {
 
 namespace {
-
-constexpr unsigned max_workers = 256;  // the limit of octopair/processes.hpp
 
 #ifdef OCTOPAIR_WITH_PROCESSES
 constexpr bool with_processes = true;
@@ -38,10 +37,10 @@ constexpr bool with_mpi = false;
 #endif
 
 std::string engine_help() {
-    std::string help = "engine that finds the pairs: local (default; threads)";
-    if (with_processes) help += ", processes (worker processes)";
-    if (with_mpi) help += ", mpi (ranks, under mpirun)";
-    if (with_service) help += ", or the address of a server (unix:PATH or HOST:PORT)";
+    std::string help = "engine: local (default; threads)";
+    if (with_processes) help += ", processes";
+    if (with_mpi) help += ", mpi (ranks)";
+    if (with_service) help += ", or a server (unix:PATH or HOST:PORT)";
     return help;
 }
 
@@ -68,24 +67,6 @@ unsigned count_or_cores(const std::optional<unsigned>& asked, unsigned most) {
     return std::min(available_cores(), most);
 }
 
-/// An option whose value is a whole number from 0 to `most`.
-struct CountOption {
-    const char* name;
-    const char* description;
-    unsigned most;
-};
-
-void add_count(Command& command, const CountOption& option, std::optional<unsigned>& value) {
-    command
-        .add_option(
-            option.name,
-            [option, &value](const std::string& text) {
-                value = unsigned(parse_count(option.name, text, option.most));
-            },
-            option.description)
-        .type_name("N");
-}
-
 }  // namespace
 
 std::vector<std::string_view> engine_names() {
@@ -96,17 +77,24 @@ std::vector<std::string_view> engine_names() {
 }
 
 void add_engine_options(Command& command, EngineChoice& choice) {
+    command.begin_section("Engine");
     command
         .add_option(
             "--engine", [&choice](const std::string& word) { parse_engine(word, choice); }, engine_help())
         .type_name("ENGINE");
-    add_count(command,
-              {"--threads", "threads of the local engine (default 0: one per core), or of each rank (default 1)",
-               max_threads},
-              choice.threads);
-    add_count(command,
-              {"--workers", "worker processes, with --engine processes (default 0: one per core)", max_workers},
-              choice.workers);
+    command
+        .add_option(
+            "--threads", [&choice](const std::string& text) { choice.threads = parse_threads(text); },
+            "threads (default 0: one per core), or threads of each rank (default 1)")
+        .type_name("N");
+    command
+        .add_option(
+            "--workers",
+            [&choice](const std::string& text) {
+                choice.workers = unsigned(parse_count("--workers", text, max_workers));
+            },
+            "worker processes of --engine processes (default 0: one per core)")
+        .type_name("N");
 }
 
 void check_engine_choice(const EngineChoice& choice) {
@@ -157,8 +145,8 @@ EngineChoice EngineChoice::with_width(unsigned width) const {
 EngineDescription describe_engine(const EngineChoice& choice) {
     if (choice.kind == EngineKind::processes) return {"processes", 0, count_or_cores(choice.workers, max_workers)};
     if (choice.kind == EngineKind::server) return {.engine = "server", .server = choice.server.address};
-    if (choice.kind == EngineKind::mpi) return {"mpi", count_or_cores(choice.threads.value_or(1), ~0u), 0};
-    return {"local", count_or_cores(choice.threads, ~0u), 0};
+    if (choice.kind == EngineKind::mpi) return {"mpi", count_or_cores(choice.threads.value_or(1), max_threads), 0};
+    return {"local", count_or_cores(choice.threads, max_threads), 0};
 }
 
 unsigned local_threads(const EngineChoice& choice) {

@@ -53,12 +53,12 @@ int run_generate(const GenerateRequest& request) {
     return 0;
 }
 
-std::string kinds_text() {
-    std::string text = "Kinds:\n";
+HelpSection kinds() {
+    HelpSection section{"Kinds", {}};
     for (const std::string_view kind : samples::scene_kinds()) {
-        text += fmt::format("  {:<12}{}\n", kind, samples::scene_description(kind));
+        section.entries.push_back({std::string(kind), std::string(samples::scene_description(kind))});
     }
-    return text;
+    return section;
 }
 
 void add_numbers(Command& command, GenerateRequest& request) {
@@ -73,7 +73,7 @@ void add_numbers(Command& command, GenerateRequest& request) {
     command
         .add_option(
             "--seed", [&request](const std::string& text) { request.spec.seed = parse_count("--seed", text); },
-            "seed of the scene; another seed gives another scene (default 0)")
+            "another seed gives another scene (default 0)")
         .type_name("S");
     command
         .add_option(
@@ -89,14 +89,24 @@ void add_numbers(Command& command, GenerateRequest& request) {
 }  // namespace
 
 void add_generate(Command& program, Action& action) {
-    Command command = program.add_subcommand(
-        "generate", "make a scene from a seed; the same seed gives the same bytes on every machine");
+    Command command = program.add_subcommand("generate", "make a random scene; the same seed gives the same bytes");
     const auto request = std::make_shared<GenerateRequest>();
-    command.add_option("KIND", request->spec.kind, "kind of scene, see below").required();
+    command.begin_section("Scene");
+    command
+        .add_option(
+            "KIND",
+            [request](const std::string& kind) {
+                check_value("KIND", samples::scene_kinds(), kind);
+                request->spec.kind = kind;
+            },
+            "kind of scene, see below")
+        .required();
     add_numbers(command, *request);
-    command.add_option("--output", request->output, "the file to write").type_name("FILE.npy").required();
+    command.begin_section("Output");
+    command.add_option("-o,--output", request->output, "the file to write").type_name("FILE.npy").required();
     command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
-    command.footer(kinds_text());
+    command.add_help_section(kinds());
+    command.set_examples({"octopair generate uniform --objects 1000000 -o boxes.npy"});
     command.callback([request, &action] {
         if (request->output != "-" && io::ending_of(request->output) != ".npy") {
             throw Error(ErrorCode::usage,

@@ -264,9 +264,9 @@ int run_info() {
 void add_info(Command& program, Action& action) {
     Command command = program.add_subcommand("info", "print version, build and engines, or what files hold");
     const auto paths = std::make_shared<std::vector<std::string>>();
-    command.add_option(
-        "INPUT", *paths,
-        "files to read: print format, unit, axes, objects, triangles, open meshes, what was not read, warnings");
+    command.begin_section("Input");
+    command.add_option("INPUT", *paths, "files: print format, unit, axes, objects, open meshes, what was not read");
+    command.set_examples({"octopair info parts.glb"});
     command.callback(
         [&action, paths] { action = [paths] { return paths->empty() ? run_info() : run_file_info(*paths); }; });
 }

@@ -28,16 +28,18 @@ int run(int argc, char** argv) {
                      "octopair " OCTOPAIR_VERSION);
     Command program = line.program();
     program.require_subcommand();
+    program.set_examples({"octopair generate uniform --objects 1000000 -o boxes.npy",
+                          "octopair detect boxes.npy -o pairs.npy", "octopair detect parts.glb --report clashes.html"});
     Action action;
     add_detect(program, action);
     add_generate(program, action);
-    add_info(program, action);
-    add_replay(program, action);
 #ifdef OCTOPAIR_WITH_VIEWER
     add_view(program, action);
 #else
     add_missing_view(program);
 #endif
+    add_info(program, action);
+    add_replay(program, action);
 #ifdef OCTOPAIR_WITH_SERVICE
     add_serve(program, action);
     add_submit(program, action);

@@ -3,15 +3,35 @@
 # Subcommands, options and their arguments come from the help of the program, so they are those of the installed program. Only
 # the values of an option are listed here, in _octopair_values. tests/cli/completion_test.py compares the shells.
 
-# PROGRAM SECTION [SUBCOMMAND]: prints a section of the help, such as Options, as lines "NAME|ARGUMENT".
-_octopair_section() {
-    "$1" ${3:+"$3"} --help 2>/dev/null | awk -F '  +' -v section="$2:" '
-        /^[A-Z]/ { inside = $0 == section }
-        inside && /^  [^ ]/ {
+# PROGRAM KIND [SUBCOMMAND]: prints entries of the help as lines "NAME|ARGUMENT|DESCRIPTION". KIND: Options, Arguments, or the
+# section Subcommands or Kinds. An option with a short name has two lines.
+_octopair_entries() {
+    "$1" ${3:+"$3"} --help 2>/dev/null | awk -F '  +' -v wanted="$2" '
+        function finish(  i) {
+            for (i = 1; i in names; ++i) if (kind == wanted) print names[i] "|" argument "|" text
+            delete names
+        }
+        /^[A-Z]/ { finish(); section = substr($0, 1, length($0) - 1) }
+        /^   / { text = text " " $2 }
+        /^  [^ ]/ {
+            finish()
             split($2, head, " ")
-            sub(/^-h,/, "", head[1])
-            print head[1] "|" (head[2] ~ /^[A-Z][A-Za-z.:]*$/ && head[2] !~ /:$|^REQUIRED$/ ? head[2] : "")
-        }'
+            text = $3
+            kind = $2 ~ /^-/ ? "Options" : section ~ /^(Subcommands|Kinds|Examples)$/ ? section : "Arguments"
+            long = head[1] ~ /,$/ ? 2 : 1
+            argument = head[long + 1]
+            for (i = 1; i <= long; ++i) {
+                names[i] = head[i]
+                sub(/(,|\.\.\.)$/, "", names[i])
+            }
+            sub(/\.\.\.$/, "", argument)
+        }
+        END { finish() }'
+}
+
+# The same, but prints only the names.
+_octopair_names() {
+    _octopair_entries "$@" | cut -d '|' -f 1
 }
 
 # Prints the engines of this build; "unix:" stands for a server.
@@ -51,9 +71,9 @@ _octopair_values() {
         --log:*) words="text json" ;;
         --log-level:*) words="debug info warn error" ;;
         --engine:*) words=$(_octopair_engines "$1") ;;
-        :KIND) words=$(_octopair_section "$1" Kinds generate) words=${words//|/} ;;
+        :KIND) words=$(_octopair_names "$1" Kinds generate) ;;
         :ID) words=$(_octopair_jobs "$1") ;;
-        --output:FILE) _octopair_files "$4" npy csv jsonl ;;
+        -o:FILE | --output:FILE) _octopair_files "$4" npy csv jsonl ;;
         *:DIR) compgen -d -- "$4" ;;
         *:FILE | :INPUT) _octopair_files "$4" ;;
         *:*.*) _octopair_files "$4" "${3##*.}" ;;
@@ -66,8 +86,8 @@ _octopair_subcommand() {
     local program=$1 subcommand=$2 current=$3 name argument positional option= given=0 word
     local -A argument_of=()
     shift 3
-    while IFS='|' read -r name argument; do argument_of[$name]=$argument; done < <(_octopair_section "$program" Options "$subcommand")
-    IFS='|' read -r positional argument < <(_octopair_section "$program" Positionals "$subcommand")
+    while IFS='|' read -r name argument _; do argument_of[$name]=$argument; done < <(_octopair_entries "$program" Options "$subcommand")
+    read -r positional < <(_octopair_names "$program" Arguments "$subcommand")
     for word in "$@"; do
         if [[ -n $option ]]; then
             option=
@@ -90,9 +110,10 @@ _octopair_subcommand() {
 
 _octopair() {
     local program=$1 current=${COMP_WORDS[COMP_CWORD]} names
-    if ((COMP_CWORD == 1)); then
-        names=$(_octopair_section "$program" Subcommands; _octopair_section "$program" Options)
-        mapfile -t COMPREPLY < <(compgen -W "${names//|/}" -- "$current")
+    if ((COMP_CWORD == 1)) || [[ ${COMP_WORDS[1]} == help ]]; then
+        names=$(_octopair_names "$program" Subcommands)
+        ((COMP_CWORD > 1)) || names+=" $(_octopair_names "$program" Options)"
+        mapfile -t COMPREPLY < <(compgen -W "$names" -- "$current")
         return
     fi
     mapfile -t COMPREPLY < <(_octopair_subcommand "$program" "${COMP_WORDS[1]}" "$current" "${COMP_WORDS[@]:2:COMP_CWORD-2}")

@@ -3,28 +3,35 @@
 # Subcommands, options and their arguments come from the help of the program, so they are those of the installed program. Only
 # the values of an option are listed here, in __octopair_values. tests/cli/completion_test.py compares the shells.
 
-# PROGRAM SECTION [SUBCOMMAND]: prints a section of the help, such as Options, as lines "NAME|ARGUMENT|DESCRIPTION". A line of
-# the help may continue on the next line, which then has the description.
-function __octopair_section
-    $argv[1] $argv[3..-1] --help 2>/dev/null | awk -F '  +' -v section="$argv[2]:" '
-        function finish() { if (name) print name "|" argument "|" text; name = "" }
-        /^[A-Z]/ { inside = $0 == section }
-        !inside { next }
+# PROGRAM KIND [SUBCOMMAND]: prints entries of the help as lines "NAME|ARGUMENT|DESCRIPTION". KIND: Options, Arguments, or the
+# section Subcommands or Kinds. An option with a short name has two lines.
+function __octopair_entries
+    $argv[1] $argv[3..-1] --help 2>/dev/null | awk -F '  +' -v wanted="$argv[2]" '
+        function finish(  i) {
+            for (i = 1; i in names; ++i) if (kind == wanted) print names[i] "|" argument "|" text
+            delete names
+        }
+        /^[A-Z]/ { finish(); section = substr($0, 1, length($0) - 1) }
+        /^   / { text = text " " $2 }
         /^  [^ ]/ {
             finish()
             split($2, head, " ")
-            sub(/^-h,/, "", head[1])
-            name = head[1]
-            argument = head[2] ~ /^[A-Z][A-Za-z.:]*$/ && head[2] !~ /:$|^REQUIRED$/ ? head[2] : ""
             text = $3
+            kind = $2 ~ /^-/ ? "Options" : section ~ /^(Subcommands|Kinds|Examples)$/ ? section : "Arguments"
+            long = head[1] ~ /,$/ ? 2 : 1
+            argument = head[long + 1]
+            for (i = 1; i <= long; ++i) {
+                names[i] = head[i]
+                sub(/(,|\.\.\.)$/, "", names[i])
+            }
+            sub(/\.\.\.$/, "", argument)
         }
-        /^   / { text = $2 }
         END { finish() }'
 end
 
-# PROGRAM SECTION [SUBCOMMAND]: prints the names of a section with their descriptions, as fish expects candidates.
+# PROGRAM KIND [SUBCOMMAND]: prints the names with their descriptions, as fish expects candidates.
 function __octopair_names
-    __octopair_section $argv | string replace -r '^([^|]*)\|[^|]*\|' '$1\t'
+    __octopair_entries $argv | string replace -r '^([^|]*)\|[^|]*\|' '$1\t'
 end
 
 # Prints the engines of this build; "unix:" stands for a server.
@@ -73,7 +80,7 @@ function __octopair_values
             __octopair_names $argv[1] Kinds generate
         case ':ID'
             __octopair_jobs $argv[1]
-        case --output:FILE
+        case -o:FILE --output:FILE
             __octopair_files npy csv jsonl
         case '*:DIR'
             __fish_complete_directories (commandline -ct)
@@ -88,8 +95,8 @@ end
 function __octopair_subcommand
     set -l program $argv[1]
     set -l subcommand $argv[2]
-    set -l options (__octopair_section $program Options $subcommand)
-    set -l positional (__octopair_section $program Positionals $subcommand | string replace -r '\|.*' '')
+    set -l options (__octopair_entries $program Options $subcommand)
+    set -l positional (__octopair_entries $program Arguments $subcommand | string replace -r '\|.*' '')
     set -l pending
     set -l given 0
     for word in $argv[3..-1]
@@ -115,7 +122,9 @@ end
 
 function __octopair_complete
     set -l words (commandline -opc)
-    if set -q words[2]
+    if test "$words[2]" = help
+        __octopair_names $words[1] Subcommands
+    else if set -q words[2]
         __octopair_subcommand $words
     else
         __octopair_names $words[1] Subcommands

@@ -76,17 +76,17 @@ int run_replay(const ReplayRequest& request) {
 void add_replay(Command& program, Action& action) {
     Command command = program.add_subcommand("replay", "run the recorded calls of a scene again");
     const auto request = std::make_shared<ReplayRequest>();
+    command.begin_section("Input");
     command.add_option("FILE", request->file, "recording, made with SceneOptions::recording").required();
+    command.begin_section("Replay");
     command
         .add_option(
-            "--threads",
-            [request](const std::string& text) {
-                request->threads = unsigned(parse_count("--threads", text, max_threads));
-            },
+            "--threads", [request](const std::string& text) { request->threads = parse_threads(text); },
             "threads (default 0: one per core)")
         .type_name("N");
     command.add_flag("--check", request->check, "compare each step with the recording; exit status 6 if they differ");
     command.add_flag("--quiet", request->quiet, "no progress and no summary on standard error");
+    command.set_examples({"octopair replay game.rec --check"});
     command.callback([request, &action] { action = [request] { return run_replay(*request); }; });
 }
 

@@ -9,7 +9,7 @@ namespace {
 class BenchUsage : public ProgramTest {};
 
 TEST_F(BenchUsage, HelpAndVersionAreAnswers) {
-    for (const std::string what : {"--help", "paper --help", "--version"}) {
+    for (const std::string what : {"--help", "paper --help", "help", "help paper", "--version", "-V"}) {
         const Outcome outcome = run(what);
         EXPECT_EQ(outcome.status, 0) << what;
         EXPECT_NE(outcome.out, "") << what;
@@ -25,7 +25,7 @@ TEST_F(BenchUsage, WrongOptionsAreRefused) {
         "paper --objects 1",
         "paper --objects 1000 many",
         "paper --objects 4294967296",
-        "paper --threads 1025",
+        "paper --threads 4097",
         "paper --rounds 0",
         "paper --scene nothing",
         "paper a.npy",
@@ -40,7 +40,7 @@ TEST_F(BenchUsage, WrongOptionsAreRefused) {
         "cluster --arrangement other",
         "cluster --ranks-per-machine 0",
         "scaling --cores 0",
-        "scaling --cores 1 1025",
+        "scaling --cores 1 4097",
         "scaling --threads-per-rank none",
         "scaling a.npy",
     };
@@ -53,6 +53,16 @@ TEST_F(BenchUsage, WrongOptionsAreRefused) {
         EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
         EXPECT_EQ(directory_.names(), std::vector<std::string>{}) << arguments;
     }
+}
+
+TEST_F(BenchUsage, SimilarNamesAreSuggested) {
+    EXPECT_EQ(run("papr").err,
+              "octopair-bench: papr: no such subcommand; did you mean 'paper'? (see octopair-bench --help)\n");
+    EXPECT_EQ(run("paper --thraeds 2").err,
+              "octopair-bench: --thraeds: no such option of paper; did you mean '--threads'? (see octopair-bench paper "
+              "--help)\n");
+    EXPECT_TRUE(has_text(run("paper --scene unifrom").err, "did you mean 'uniform'?"));
+    EXPECT_EQ(run("paper --threads 4097").err, "octopair-bench: --threads: 4097 is not in the range 0 to 4096\n");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ WORDS = {
     "--log-level": "debug info warn error",
 }
 NOTHING = {"N", "M", "S", "F", "BYTES", "SECONDS", "LENGTH", "UUID", "CLIENT", "USER", "ADDRESS", "HOST:PORT"}
-FILES = ["a.npy", "b.csv", "c.jsonl", "d.pem", "e.html", "f.json", "g.txt"]
+FILES = ["a.npy", "b.csv", "c.jsonl", "d.pem", "e.html", "f.json", "g.txt", "hnpy"]
 FOLDER = "folder"
 JOB = "0123abcd-0000-4000-8000-00000000abcd"
 # Stands for the program: prints a job without a server, and otherwise runs the program.
@@ -38,21 +38,32 @@ exec 'PROGRAM' "$@"
 """
 
 
-def sections(text):
-    """Returns the sections of a help text: name -> {entry: (argument, description)}."""
-    found, entries, name = {}, None, None
-    for line in text.splitlines():
-        if re.match(r"[A-Z]\w*:$", line):
-            entries = found.setdefault(line[:-1], {})
-        elif entries is not None and re.match(r"  \S", line):
-            head, _, words = line.strip().partition("  ")
-            head = head.split()
-            name = head[0].removeprefix("-h,")
-            takes = len(head) > 1 and not head[1].endswith(":") and head[1] != "REQUIRED"
-            entries[name] = (head[1] if takes else "", words.strip())
-        elif entries and line.startswith("   "):
-            entries[name] = (entries[name][0], entries[name][1] + " " + line.strip())
-    return found
+class Help:
+    """The entries of a help text: `options` has NAME -> (argument, description), with a name for each short form; `arguments` has the
+    names of positional arguments; `subcommands` and `kinds` are the names in these sections."""
+
+    def __init__(self, text):
+        self.options, self.arguments, self.subcommands, self.kinds = {}, [], [], []
+        section = None
+        for entry in re.sub(r"\n {4,}", "  ", text).splitlines():  # a description may continue on more lines
+            if re.match(r"[A-Z][\w ]*:$", entry):
+                section = entry[:-1]
+            elif entry.startswith("  ") and section != "Examples":
+                head, _, words = entry.strip().partition("  ")
+                self.add(section, head.split(), " ".join(words.split()))
+
+    def add(self, section, head, words):
+        names = [head[0].rstrip(","), head[1]] if head[0].endswith(",") else [head[0]]
+        argument = head[len(names)].removesuffix("...") if len(head) > len(names) else ""
+        if section in ("Subcommands", "Kinds"):
+            {"Subcommands": self.subcommands, "Kinds": self.kinds}[section].append(names[0])
+        elif names[0].startswith("-"):
+            self.options.update((name, (argument, words)) for name in names)
+        else:
+            self.arguments.append(names[0].removesuffix("..."))
+
+    def long_options(self):
+        return {name for name in self.options if name.startswith("--")}
 
 
 class Program:
@@ -63,7 +74,7 @@ class Program:
         return subprocess.run([self.path, *arguments], capture_output=True, text=True, check=True).stdout
 
     def help(self, *subcommand):
-        return sections(self.run(*subcommand, "--help"))
+        return Help(self.run(*subcommand, "--help"))
 
     def engines(self):
         """Returns the engines of this build as completions."""
@@ -86,7 +97,7 @@ def values_of(program, option, argument, text):
         return program.engines()
     if argument == "DIR":
         return {FOLDER}
-    if option == "--output" and argument == "FILE":
+    if option in ("-o", "--output") and argument == "FILE":
         return ending("npy", "csv", "jsonl")
     if argument == "FILE":
         return ending()
@@ -98,17 +109,17 @@ def values_of(program, option, argument, text):
 def cases_of(program, subcommand):
     """Yields command lines of a subcommand, and the candidates of each."""
     known = program.help(subcommand)
-    options = known["Options"]
-    yield f"{subcommand} --", set(options)
+    options = known.options
+    yield f"{subcommand} --", known.long_options()
     for option, (argument, text) in options.items():
         if not argument:
             continue
         expected = values_of(program, option, argument, text)
         assert expected is not None, f"{subcommand} {option}: the test has no rule for the argument {argument}"
         yield f"{subcommand} {option} ", expected
-    positional = next(iter(known.get("Positionals", {})), None)
+    positional = next(iter(known.arguments), None)
     if positional == "KIND":
-        kinds = set(program.help(subcommand)["Kinds"])
+        kinds = set(known.kinds)
         yield f"{subcommand} ", kinds
         yield f"{subcommand} --seed 1 ", kinds
     elif positional in ("INPUT", "FILE"):
@@ -124,11 +135,12 @@ def cases_of(program, subcommand):
 
 def cases(program):
     top = program.help()
-    yield "", set(top["Subcommands"])
-    yield "--", set(top["Options"])
-    yield "d", {name for name in top["Subcommands"] if name.startswith("d")}
+    yield "", set(top.subcommands)
+    yield "--", top.long_options()
+    yield "d", {name for name in top.subcommands if name.startswith("d")}
+    yield "help d", {name for name in top.subcommands if name.startswith("d")}
     yield "detect --order a", {"ascending"}
-    for subcommand in top["Subcommands"]:
+    for subcommand in top.subcommands:
         yield from cases_of(program, subcommand)
 
 
@@ -203,7 +215,7 @@ def in_zsh(script, folder, lines):
         os.close(terminal)
         os.waitpid(process, 0)
     blocks = re.split("^=$", text.partition("ready\n")[2], flags=re.MULTILINE)[:-1]
-    return [{hit.split(":")[0] if hit.startswith("--") else hit for hit in block.split("\n") if hit} for block in blocks]
+    return [{hit.split(":")[0] if hit.startswith("-") else hit for hit in block.split("\n") if hit} for block in blocks]
 
 
 def complete_in(shell, script, program, wanted):
@@ -217,7 +229,7 @@ def complete_in(shell, script, program, wanted):
     wrong = 0
     for (line, expected), candidates in zip(wanted, found):
         # The empty first word may also be an option.
-        if candidates == expected or (line == "" and candidates == expected | set(program.help()["Options"])):
+        if candidates == expected or (line == "" and candidates == expected | set(program.help().options)):
             continue
         wrong += 1
         print(f"{shell}: octopair {line}<TAB>\n    missing: {sorted(expected - candidates)}\n"

@@ -183,7 +183,7 @@ TEST_F(Engines, RefusesOptionsThatConflict) {
               "--threads: not with --engine processes; --workers sets the number of worker processes"},
              {"--workers 2", "--workers: only with --engine processes; the local engine has --threads"},
              {"--engine local --workers 2", "--workers: only with --engine processes; the local engine has --threads"},
-             {"--engine processes --workers 257", "--workers: '257' is not a whole number from 0 to 256"},
+             {"--engine processes --workers 257", "--workers: 257 is not in the range 0 to 256"},
              {"--engine processes --workers two", "--workers: 'two' is not a whole number from 0 to 256"},
 #ifdef OCTOPAIR_WITH_MPI
              {"--engine mpi --workers 2", "--workers: not with --engine mpi; mpirun -n sets the number of ranks"},

@@ -21,9 +21,7 @@ void read_config(const NearMissFile& file, Values& values) {
         log = text;
     };
     serve.add_option("--log", read_log, "");
-    const auto read_threads = [&](const std::string& text) {
-        threads = cli::parse_count("--threads", text, cli::max_threads);
-    };
+    const auto read_threads = [&](const std::string& text) { threads = cli::parse_threads(text); };
     serve.add_option("--threads", read_threads, "");
     const auto read_memory = [&](const std::string& text) { memory = cli::parse_bytes("--max-memory", text); };
     serve.add_option("--max-memory", read_memory, "");

@@ -29,7 +29,7 @@ class Count:
 class Threads(Count):
     """The value of --threads."""
 
-    most = 1024
+    most = 4096
 
 
 class Bytes:

@@ -30,7 +30,8 @@ protected:
 };
 
 TEST_F(ServeOptions, UnknownKeysNameFileAndKey) {
-    EXPECT_EQ(refused("max-jbos = 5\n"), "octopair: c.toml: max-jbos: not an option of 'serve'\n");
+    EXPECT_EQ(refused("max-jbos = 5\n"),
+              "octopair: c.toml: max-jbos: not an option of 'serve'; did you mean 'max-jobs'?\n");
     EXPECT_EQ(refused("max-jobs = 5\nmax-jobs = 6\n"), "octopair: c.toml: max-jobs: set twice\n");
     EXPECT_EQ(refused("max-jobs = \x1B[1m\n", 3), "octopair: c.toml: not a text file of at most 1 MiB\n");
     EXPECT_EQ(refused(std::string((1 << 20) + 1, '#'), 3), "octopair: c.toml: not a text file of at most 1 MiB\n");

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/command/help_text.hpp"
+
 namespace CLI {  // NOLINT(readability-identifier-naming): not ours
 class App;
 class Option;
@@ -52,13 +54,18 @@ struct GivenOption {
     std::vector<std::string> texts;
 };
 
-/// The program, or a subcommand. A name `--NAME` makes an option. A name without dashes makes a positional argument.
+/// Parts of the help after the options.
+struct HelpParts {
+    std::vector<HelpSection> sections;
+    std::vector<std::string> examples;
+};
+
+/// The program, or a subcommand. A name `--NAME`, or `-N,--NAME` with a short form, makes an option. A name without dashes makes a
+/// positional argument.
 class Command {
 public:
     using ReadText = std::function<void(const std::string& text)>;
     using ReadTexts = std::function<void(const std::vector<std::string>& texts)>;
-
-    explicit Command(CLI::App& app) : app_(&app) {}
 
     std::string name() const;
     Command add_subcommand(const std::string& name, const std::string& description);
@@ -66,8 +73,12 @@ public:
     void require_subcommand();
     /// Accepts any further arguments, and ignores them.
     void ignore_other_arguments();
-    /// Sets the last part of the help.
-    void footer(const std::string& text);
+    /// Puts the options and arguments that are added from now on into a section of the help.
+    void begin_section(const std::string& title);
+    /// Adds a section to the help after all options.
+    void add_help_section(HelpSection section);
+    /// Sets the command lines at the end of the help. Requires: at most 58 characters each, so that they fit narrow terminals.
+    void set_examples(std::vector<std::string> lines);
     /// Sets a function that runs after all options are parsed.
     void callback(std::function<void()> done);
 
@@ -81,11 +92,17 @@ public:
     Option add_option(const std::string& name, const ReadTexts& read, const std::string& description);
     Option add_flag(const std::string& name, bool& value, const std::string& description);
     std::optional<Option> find_option(const std::string& name) const;
+    /// Returns the names of the options that the help shows, without dashes.
+    std::vector<std::string> option_names() const;
     /// Returns the options that have values. Requires: the command line was parsed.
     std::vector<GivenOption> given_options() const;
 
 private:
+    friend class CommandLine;
+    explicit Command(CLI::App& app);
+
     CLI::App* app_;
+    std::shared_ptr<HelpParts> parts_ = std::make_shared<HelpParts>();
 };
 
 /// The parser of the whole command line.
@@ -95,15 +112,16 @@ public:
     CommandLine(const std::string& name, const std::string& description, const std::string& version);
     ~CommandLine();
 
-    Command program() { return Command(*app_); }
+    Command program() const { return program_; }
 
     /// Parses all options, and runs the callbacks of the commands. Returns nothing, or the exit status if the help or the
-    /// version was printed instead.
+    /// version was printed instead. `help [SUBCOMMAND]` means `[SUBCOMMAND] --help`.
     /// Throws: Error{usage} for an invalid command line; what readers of options and callbacks throw.
     std::optional<int> parse(int argc, char** argv);
 
 private:
     std::unique_ptr<CLI::App> app_;
+    Command program_;
 };
 
 // config_file.cpp

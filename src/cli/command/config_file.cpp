@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -14,6 +13,7 @@
 
 #include "base/descriptor.hpp"
 #include "cli/command/command.hpp"
+#include "cli/command/suggestion.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -128,16 +128,20 @@ std::vector<Entry> entries_of(const std::string& file) {
 }  // namespace
 
 void apply_config(const Command& command, const std::string& file) {
+    std::vector<std::string> names = command.option_names();
+    std::erase(names, "config");
+    std::erase(names, "help");
     std::set<std::string> seen;
     for (const auto& [key, value] : entries_of(file)) {
-        std::optional<Option> option = command.find_option("--" + key);
-        if (!option || key == "config" || key == "help") {
-            refuse(file, key, "not an option of '" + command.name() + "'");
+        if (std::find(names.begin(), names.end(), key) == names.end()) {
+            refuse(file, key,
+                   "not an option of '" + command.name() + "'" + did_you_mean(key, {names.begin(), names.end()}));
         }
+        Option option = *command.find_option("--" + key);
         if (!seen.insert(key).second) refuse(file, key, "set twice");
-        if (option->is_given()) continue;
+        if (option.is_given()) continue;
         try {
-            option->set_text(value);
+            option.set_text(value);
         } catch (const Error& error) {
             refuse(file, key, error.what());
         }

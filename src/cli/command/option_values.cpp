@@ -8,7 +8,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/command/suggestion.hpp"
 #include "octopair/error.hpp"
+#include "octopair/limits.hpp"
 
 namespace octopair::cli {
 
@@ -32,16 +34,24 @@ bool parse_whole_text(const std::string& text, Number& number) {
 
 void check_value(std::string_view option, const std::vector<std::string_view>& valid, const std::string& value) {
     if (std::find(valid.begin(), valid.end(), value) != valid.end()) return;
-    throw Error(ErrorCode::usage, fmt::format("{}: '{}' is not a valid value; valid values: {}", option,
-                                              shown_value(value), fmt::join(valid, ", ")));
+    const std::string suggestion = did_you_mean(value, valid);
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: '{}' is not a valid value{} {}: {}", option, shown_value(value),
+                            suggestion.empty() ? ";" : suggestion, suggestion.empty() ? "valid values" : "Valid values",
+                            fmt::join(valid, ", ")));
 }
 
 std::uint64_t parse_count(std::string_view option, const std::string& text, std::uint64_t most) {
     std::uint64_t number = 0;
     if (parse_whole_text(text, number) && number <= most) return number;
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: '{}' is not a whole number from 0 to {}", option, shown_value(text), most));
+    const std::string_view digits = std::string_view(text).substr(text.starts_with('-') ? 1 : 0);
+    const bool is_number = !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
+    throw Error(ErrorCode::usage, is_number ? fmt::format("{}: {} is not in the range 0 to {}", option, text, most)
+                                            : fmt::format("{}: '{}' is not a whole number from 0 to {}", option,
+                                                          shown_value(text), most));
 }
+
+unsigned parse_threads(const std::string& text) { return unsigned(parse_count("--threads", text, max_threads)); }
 
 std::uint64_t parse_bytes(std::string_view option, const std::string& text) {
     constexpr std::string_view suffixes = "KMGT";

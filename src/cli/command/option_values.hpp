@@ -11,14 +11,15 @@
 
 namespace octopair::cli {
 
-inline constexpr unsigned max_threads = 1024;  ///< largest value of --threads
-
-/// Throws: Error{usage} that names `option` and lists the valid values, unless `value` is one of them.
+/// Throws: Error{usage} that names `option`, lists the valid values, and suggests a similar one, unless `value` is one of them.
 void check_value(std::string_view option, const std::vector<std::string_view>& valid, const std::string& value);
 
 /// Returns a whole number from 0 to `most`. Throws: Error{usage} that names `option`.
 std::uint64_t parse_count(std::string_view option, const std::string& text,
                           std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+/// Returns the value of --threads. Throws: Error{usage} for more than max_threads (octopair/limits.hpp).
+unsigned parse_threads(const std::string& text);
 
 /// Returns a number of bytes. The suffixes K, M, G and T are powers of 1024. Throws: Error{usage} that names `option`.
 std::uint64_t parse_bytes(std::string_view option, const std::string& text);

@@ -126,6 +126,9 @@ void add_detect(Command& program, Action& action) {
     Command command = program.add_subcommand("detect", "find the colliding pairs of a scene");
     const auto request = std::make_shared<DetectRequest>();
     add_detect_options(command, *request);
+    command.set_examples({"octopair detect boxes.npy -o pairs.npy",
+                          "octopair detect parts.glb --margin 0.01 -o near.jsonl",
+                          "octopair detect moving.npy --events -o events.csv"});
     command.callback([command, request, &action] {
         check_detect_options(*request);
         request->given = command.given_options();

@@ -17,7 +17,7 @@
 
 namespace octopair::cli {
 
-void add_box_options(Command& command, DetectRequest& request) {
+void add_objects_option(Command& command, DetectRequest& request) {
     command
         .add_option(
             "--objects",
@@ -25,22 +25,27 @@ void add_box_options(Command& command, DetectRequest& request) {
                 check_value("--objects", {"node", "triangle"}, word);
                 request.mesh_objects = word == "node" ? io::MeshObjects::node : io::MeshObjects::triangle;
             },
-            "objects of a mesh file: node (default; nodes with meshes) or triangle")
+            "objects of a mesh file: node (default) or triangle")
         .type_name("WHAT");
+}
+
+void add_margin_option(Command& command, DetectRequest& request) {
     command
         .add_option(
             "--margin", [&request](const std::string& text) { request.margin = parse_length("--margin", text); },
-            "largest gap per axis at which two boxes still form a pair (default 0)")
+            "largest gap of a pair, for boxes on every axis (default 0)")
         .type_name("M");
 }
 
 void add_scene_options(Command& command, DetectRequest& request) {
-    command
-        .add_option("INPUT", request.inputs, "scene files: .npy, .csv, .json or mesh files; several files form one set")
+    command.begin_section("Input");
+    command.add_option("INPUT", request.inputs, ".npy, .csv, .json or mesh files; several files form one set")
         .required();
-    command.add_option("--against", request.against, "find only pairs of an object a of INPUT and an object b of FILE")
+    command.add_option("--against", request.against, "only pairs of an object of INPUT and an object of FILE")
         .type_name("FILE");
-    add_box_options(command, request);
+    add_objects_option(command, request);
+    command.begin_section("What counts");
+    add_margin_option(command, request);
     command.add_option("--padding", request.padding, "clearance of each object: an array of shape (n,)")
         .type_name("FILE.npy");
 }
@@ -61,21 +66,26 @@ void add_order_options(Command& command, DetectRequest& request, const std::stri
         .type_name("N");
 }
 
+Option add_output_option(Command& command, std::string& output) {
+    return command
+        .add_option("-o,--output", output, "file for the pairs: .npy, .csv or .jsonl (default: CSV on standard output)")
+        .type_name("FILE");
+}
+
 namespace {
 
 void add_what(Command& command, DetectRequest& request) {
     add_scene_options(command, request);
-    add_pipeline_options(command, request.pipeline);
+    add_stage_options(command, request.pipeline);
     command.add_flag("--events", request.events,
-                     "for a moving scene: write only the pairs that begin or end, as rows frame,event,a,b");
+                     "of a moving scene: only pairs that begin or end, as rows frame,event,a,b");
+    command.begin_section("Exact stages");
+    add_exact_options(command, request.pipeline);
 }
 
-void add_outcome(Command& command, DetectRequest& request) {
-    const Option output = command
-                              .add_option("--output", request.output,
-                                          "file for the pairs; its ending .npy, .csv or .jsonl gives the format "
-                                          "(default: CSV on standard output)")
-                              .type_name("FILE");
+void add_output_options(Command& command, DetectRequest& request) {
+    command.begin_section("Output");
+    const Option output = add_output_option(command, request.output);
     command
         .add_option(
             "--index-type",
@@ -83,17 +93,16 @@ void add_outcome(Command& command, DetectRequest& request) {
                 check_value("--index-type", {"uint32", "uint64"}, word);
                 request.wide_indices = word == "uint64";
             },
-            "type of indices in .npy: uint32 (default), or uint64 with --engine mpi (default for more than 2^32 - 1 "
-            "objects)")
+            "type of indices in .npy: uint32 (default), or uint64 with --engine mpi")
         .type_name("TYPE");
     add_order_options(command, request, "write only the first N pairs (with --events: rows)");
     command.add_flag("--count-only", request.count_only, "print only the number of pairs").excludes(output);
-    command.add_flag(
-        "--verify", request.verify,
-        "check the result without the octree, and collisions by certificates; exit status 6 if it is wrong");
-    command.add_flag("--fail-on-collision", request.fail_on_collision,
-                     "exit with status 1 if any pair is found, and with status 3 if an input has no object");
+    add_report_options(command, request.pipeline);
     command.add_option("--stats", request.stats, "write statistics of the run as JSON").type_name("FILE");
+    command.add_flag("--verify", request.verify,
+                     "check the result by a second algorithm; exit status 6 if it is wrong");
+    command.add_flag("--fail-on-collision", request.fail_on_collision,
+                     "exit status 1 if a pair is found, 3 if an input has no object");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
 
@@ -151,7 +160,7 @@ void check_streams(const DetectRequest& request) {
 
 void add_detect_options(Command& command, DetectRequest& request) {
     add_what(command, request);
-    add_outcome(command, request);
+    add_output_options(command, request);
     add_engine_options(command, request.engine);
 #ifdef OCTOPAIR_WITH_SERVICE
     add_server_options(command, request.engine.server);

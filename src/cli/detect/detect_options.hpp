@@ -3,16 +3,21 @@
 // Start here to add a new option of detect.
 #pragma once
 
+#include <string>
+
+#include "cli/command/command.hpp"
 #include "cli/detect/detection.hpp"
 
 namespace octopair::cli {
 
-class Command;
+/// Add --objects and --margin.
+void add_objects_option(Command& command, DetectRequest& request);
+void add_margin_option(Command& command, DetectRequest& request);
 
-/// Adds --objects and --margin.
-void add_box_options(Command& command, DetectRequest& request);
+/// Adds --output.
+Option add_output_option(Command& command, std::string& output);
 
-/// Adds INPUT, --against, --objects, --margin and --padding.
+/// Adds INPUT, --against, --objects, --margin and --padding, in the sections "Input" and "What counts".
 void add_scene_options(Command& command, DetectRequest& request);
 
 /// Adds --order and --limit. `limited` is the help text of --limit.

@@ -44,21 +44,6 @@ std::uint32_t parse_max_contacts(const std::string& text) {
     return std::uint32_t(number);
 }
 
-void add_report_options(Command& command, PipelineRequest& request) {
-    command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
-    add_up_option(command, request,
-                  "axis that points up in the report: y or z (default: that of the file format, or else z)");
-    command
-        .add_option(
-            "--unit",
-            [&request](const std::string& word) {
-                check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
-                request.space.unit = word;
-            },
-            "unit of the coordinates, for the report: mm, cm, dm, m, km, in or ft (default: that of the file format)")
-        .type_name("UNIT");
-}
-
 std::vector<std::string> all_inputs(const DetectRequest& request) {
     std::vector<std::string> inputs = request.inputs;
     if (!request.against.empty()) inputs.push_back(request.against);
@@ -91,38 +76,10 @@ void add_up_option(Command& command, PipelineRequest& request, const std::string
         .type_name("AXIS");
 }
 
-void add_pipeline_options(Command& command, PipelineRequest& request) {
+void add_stage_options(Command& command, PipelineRequest& request) {
     add_stage_option(
         command, request,
-        "last stage of the pipeline: pairs of boxes, objects that meet (default for mesh and JSON files), or "
-        "features, which adds contacts");
-    command
-        .add_option(
-            "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },
-            "pairs of triangles that share corners: beyond-shared (default: if they also meet elsewhere), exclude or "
-            "include")
-        .type_name("WHICH");
-    command
-        .add_option(
-            "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
-            "with --stage features: maximum contacts of a pair, the deepest first (default 16)")
-        .type_name("N");
-    const auto add_length = [&](const char* name, std::optional<double>& value, const char* what) {
-        const auto parse = [name, &value](const std::string& text) { value = parse_length(name, text); };
-        command.add_option(name, parse, what).type_name("LENGTH");
-    };
-    add_length(
-        "--tolerance", request.tolerance,
-        "with --stage features: the class is touching, not penetrating, if a translation of at most this length is "
-        "found to separate the objects (default: the precision of coordinates that are float32; otherwise 0)");
-    add_length(
-        "--duplicate-tolerance", request.duplicate_tolerance,
-        "with --stage features: objects of the same geometry are duplicates if no corner is further than this from "
-        "its counterpart (default: the tolerance)");
-    add_length("--min-depth", request.min_depth,
-               "with --stage features: leave out collisions that are certainly less deep");
-    add_length("--weld", request.weld,
-               "close gaps in meshes: join vertices at the edges of gaps that are at most this far apart");
+        "last stage: pairs of boxes, objects that meet (default for meshes and .json), features (contacts)");
     command.add_option("--exclude", request.exclude, "leave out pairs by rules on names, see docs/formats.md")
         .type_name("RULES.json");
     command
@@ -134,11 +91,48 @@ void add_pipeline_options(Command& command, PipelineRequest& request) {
             },
             "pairs of objects with the same parent: include (default) or exclude")
         .type_name("WHAT");
+}
+
+void add_exact_options(Command& command, PipelineRequest& request) {
+    command
+        .add_option(
+            "--adjacent", [&request](const std::string& word) { request.adjacent = parse_adjacent(word); },
+            "beyond-shared (default), exclude or include: pairs of triangles that share corners")
+        .type_name("WHICH");
+    command
+        .add_option(
+            "--max-contacts", [&request](const std::string& text) { request.max_contacts = parse_max_contacts(text); },
+            "with --stage features: most contacts of a pair, the deepest first (default 16)")
+        .type_name("N");
+    const auto add_length = [&](const char* name, std::optional<double>& value, const char* what) {
+        const auto parse = [name, &value](const std::string& text) { value = parse_length(name, text); };
+        command.add_option(name, parse, what).type_name("LENGTH");
+    };
+    add_length("--tolerance", request.tolerance,
+               "with --stage features: objects touch if a motion of at most this length separates them");
+    add_length("--duplicate-tolerance", request.duplicate_tolerance,
+               "with --stage features: farthest corners of duplicates (default: the tolerance)");
+    add_length("--min-depth", request.min_depth,
+               "with --stage features: leave out collisions that are certainly less deep");
+    add_length("--weld", request.weld, "close gaps in meshes: join vertices that are at most this far apart");
+}
+
+void add_report_options(Command& command, PipelineRequest& request) {
     command
         .add_option("--baseline", request.baseline,
                     "compare with an older result: mark collisions as new, same or gone")
         .type_name("OLD.jsonl");
-    add_report_options(command, request);
+    command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
+    add_up_option(command, request, "axis that points up in the report: y or z (default: that of the file, or z)");
+    command
+        .add_option(
+            "--unit",
+            [&request](const std::string& word) {
+                check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
+                request.space.unit = word;
+            },
+            "unit of lengths in the report: mm, cm, dm, m, km, in or ft (default: that of the file)")
+        .type_name("UNIT");
 }
 
 std::optional<std::string> input_of_boxes(const DetectRequest& request) {

@@ -38,9 +38,14 @@ std::vector<std::string_view> stage_names();
 void add_stage_option(Command& command, PipelineRequest& request, const std::string& description);
 void add_up_option(Command& command, PipelineRequest& request, const std::string& description);
 
-/// Adds --stage, --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --weld, --exclude, --same-parent,
-/// --baseline, --report, --up and --unit.
-void add_pipeline_options(Command& command, PipelineRequest& request);
+/// Adds --stage, --exclude and --same-parent.
+void add_stage_options(Command& command, PipelineRequest& request);
+
+/// Adds the options of the exact stages: --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth and --weld.
+void add_exact_options(Command& command, PipelineRequest& request);
+
+/// Adds --baseline, --report, --up and --unit.
+void add_report_options(Command& command, PipelineRequest& request);
 
 /// Returns the stage of --stage. Without it, returns `objects` if all inputs have shapes, this build has the pipeline, and the
 /// request has no --events; otherwise `pairs`.

@@ -10,6 +10,7 @@
 #include "cli/command/interrupt.hpp"
 #include "cli/command/option_values.hpp"
 #include "cli/command/progress_line.hpp"
+#include "cli/detect/detect_options.hpp"
 #include "cli/server/server_choice.hpp"
 #include "cli/subcommands.hpp"
 #include "io/formats/format_choice.hpp"
@@ -198,16 +199,13 @@ int run_result(const JobRequest& request) {
 void add_owner_option(Command& command, JobRequest& request) {
     command
         .add_option("--owner", request.server.options.owner,
-                    "with the role operator: owner of the job, if several owners have a job with this id")
+                    "owner of the job, for operators, if several owners have a job with this id")
         .type_name("CLIENT");
 }
 
 void add_result_options(Command& command, JobRequest& request) {
-    command
-        .add_option(
-            "--output", request.output,
-            "file for the pairs; its ending .npy, .csv or .jsonl gives the format (default: CSV on standard output)")
-        .type_name("FILE");
+    command.begin_section("Output");
+    add_output_option(command, request.output);
     const Option keep = command.add_flag("--keep", request.keep, "keep the job and its result on the server (default)");
     command
         .add_flag("--release", request.release,
@@ -221,6 +219,7 @@ void add_result_options(Command& command, JobRequest& request) {
 void add_status(Command& program, Action& action) {
     Command command = program.add_subcommand("status", "show the state of jobs on a server");
     const auto request = std::make_shared<JobRequest>();
+    command.begin_section("Job");
     const Option id = command.add_option("ID", request->id, "id of the job (default: all your jobs)");
     command
         .add_option(
@@ -231,6 +230,7 @@ void add_status(Command& program, Action& action) {
     command.add_flag("--json", request->json, "print JSON");
     add_owner_option(command, *request);
     add_server_address(command, request->server);
+    command.set_examples({"octopair status --server unix:octopair/socket"});
     command.callback([request, id, &action] {
         check_server_named(request->server);
         if (id.is_given() && request->id.empty()) throw Error(ErrorCode::usage, "ID: must not be empty");
@@ -241,9 +241,11 @@ void add_status(Command& program, Action& action) {
 void add_result(Command& program, Action& action) {
     Command command = program.add_subcommand("result", "write the pairs of a submitted job; wait until they are found");
     const auto request = std::make_shared<JobRequest>();
+    command.begin_section("Job");
     command.add_option("ID", request->id, "id of the job").required();
     add_result_options(command, *request);
     add_server_address(command, request->server);
+    command.set_examples({"octopair result ID --server HOST:PORT -o pairs.npy"});
     command.callback([request, &action] {
         check_server_named(request->server);
         if (request->output == "-") request->output.clear();
@@ -255,12 +257,14 @@ void add_result(Command& program, Action& action) {
 void add_cancel(Command& program, Action& action) {
     Command command = program.add_subcommand("cancel", "cancel a job on a server");
     const auto request = std::make_shared<JobRequest>();
+    command.begin_section("Job");
     command.add_option("ID", request->id, "id of the job").required();
     command.add_flag("--release", request->release,
                      "delete the job and its result from the server when the job has ended");
     command.add_flag("--json", request->json, "print JSON");
     add_owner_option(command, *request);
     add_server_address(command, request->server);
+    command.set_examples({"octopair cancel ID --server HOST:PORT"});
     command.callback([request, &action] {
         check_server_named(request->server);
         action = [request] { return run_cancel(*request); };
@@ -271,6 +275,7 @@ void add_drain(Command& program, Action& action) {
     Command command = program.add_subcommand("drain", "end a server when its running jobs have ended; for operators");
     const auto server = std::make_shared<ServerChoice>();
     add_server_address(command, *server);
+    command.set_examples({"octopair drain --server HOST:PORT"});
     command.callback([server, &action] {
         check_server_named(*server);
         action = [server] { return run_drain(*server); };

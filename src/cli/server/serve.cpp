@@ -81,6 +81,7 @@ void add_serve(Command& program, Action& action) {
     Command command = program.add_subcommand("serve", "run a server that finds pairs for clients");
     const auto request = std::make_shared<ServeRequest>();
     add_serve_options(command, *request);
+    command.set_examples({"octopair serve --listen unix:octopair/socket --state jobs"});
     command.callback([command, request, &action] {
         complete_serve_request(command, *request);
         action = [request] { return run_serve(*request); };

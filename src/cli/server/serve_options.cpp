@@ -54,62 +54,66 @@ void add_seconds(Command& command, const Described& option, Seconds& value, unsi
         .type_name(option.type);
 }
 
-void add_limits(Command& command, service::ServerLimits& limits) {
-    add_number(command,
-               {"--max-objects", "N",
-                "maximum objects of a job or scene (default 50000000); 0 means no limit for all --max options"},
-               limits.objects);
-    add_bytes(command,
-              {"--max-input", "BYTES", "maximum size of a job's input (default 4G); K, M, G, T are powers of 1024"},
-              limits.input_bytes);
-    add_number(command, {"--max-pairs", "N", "maximum stored pairs of a job (default 500000000)"}, limits.pairs);
-    add_number(command, {"--max-jobs", "N", "maximum jobs and scenes at a time (default 1000)"}, limits.jobs);
-    add_number(command, {"--max-jobs-per-client", "N", "maximum jobs and scenes of one client at a time (default 200)"},
+void add_jobs(Command& command, service::ServerOptions& options) {
+    command.begin_section("Jobs");
+    command
+        .add_option("--state", options.state_folder,
+                    "folder for detached jobs, which survive the end of the server (default: no such jobs)")
+        .type_name("DIR");
+    add_seconds(command, {"--keep", "SECONDS", "how long results are kept that are not released (default 86400)"},
+                options.keep, 1);
+    add_seconds(command, {"--grace", "SECONDS", "time that running jobs get when the server stops (default 30)"},
+                options.grace, 0);
+    add_seconds(command,
+                {"--stall", "SECONDS", "longest time that a client may take for its next message (default 60)"},
+                options.stall, 1);
+}
+
+void add_rate_limits(Command& command, service::ServerLimits& limits) {
+    add_number(command, {"--max-jobs", "N", "jobs and scenes at a time (default 1000)"}, limits.jobs);
+    add_number(command, {"--max-jobs-per-client", "N", "jobs and scenes of one client at a time (default 200)"},
                limits.jobs_per_client);
-    add_number(command, {"--max-connections", "N", "maximum connections at a time (default 1000)"}, limits.connections);
+    add_number(command, {"--max-connections", "N", "connections at a time (default 1000)"}, limits.connections);
     add_number(command,
                {"--max-connections-per-client", "N",
-                "maximum connections of one client over TCP (default: half of --max-connections, with tokens or client "
-                "certificates)"},
+                "TCP connections of one client with a token or certificate (default: half of --max-connections)"},
                limits.connections_per_client);
-    add_number(command,
-               {"--max-calls-per-client", "N",
-                "maximum calls of one client at a time (default 256, with tokens or client certificates)"},
-               limits.calls_per_client);
+    add_number(
+        command,
+        {"--max-calls-per-client", "N", "calls at a time of one client with a token or certificate (default 256)"},
+        limits.calls_per_client);
     command
         .add_option(
             "--max-seconds",
             [&limits](const std::string& text) { limits.job_seconds = parse_length("--max-seconds", text); },
-            "maximum run time of a job (default 600)")
+            "run time of a job (default 600)")
         .type_name("SECONDS");
-    add_bytes(command, {"--max-memory", "BYTES", "maximum memory of all jobs together (default 8G)"},
-              limits.memory_bytes);
+}
+
+void add_limits(Command& command, service::ServerLimits& limits) {
+    command.begin_section("Limits");
+    add_number(command,
+               {"--max-objects", "N", "objects of a job or scene (default 50000000); for all limits, 0 means none"},
+               limits.objects);
+    add_bytes(command, {"--max-input", "BYTES", "size of a job's input (default 4G); K, M, G, T are powers of 1024"},
+              limits.input_bytes);
+    add_number(command, {"--max-pairs", "N", "stored pairs of a job (default 500000000)"}, limits.pairs);
+    add_rate_limits(command, limits);
+    add_bytes(command, {"--max-memory", "BYTES", "memory of all jobs together (default 8G)"}, limits.memory_bytes);
     add_bytes(command,
               {"--max-memory-per-client", "BYTES",
-               "maximum memory of one client (default: half of --max-memory, "
-               "with tokens or client certificates)"},
+               "memory of one client with a token or certificate (default: half of --max-memory)"},
               limits.memory_bytes_per_client);
-    add_bytes(command, {"--max-state", "BYTES", "maximum disk space of all detached jobs together (default 16G)"},
+    add_bytes(command, {"--max-state", "BYTES", "disk space of all detached jobs together (default 16G)"},
               limits.state_bytes);
     add_bytes(command,
               {"--max-state-per-client", "BYTES",
-               "maximum disk space of one client (default: half of --max-state, "
-               "with tokens or client certificates)"},
+               "disk space of one client with a token or certificate (default: half of --max-state)"},
               limits.state_bytes_per_client);
 }
 
-void add_state(Command& command, service::ServerOptions& options) {
-    command
-        .add_option("--state", options.state_folder,
-                    "folder for detached jobs, which survive the end of the server (default: no detached jobs)")
-        .type_name("DIR");
-    add_seconds(
-        command,
-        {"--keep", "SECONDS", "how long results of detached jobs are kept if they are not released (default 86400)"},
-        options.keep, 1);
-}
-
 void add_access(Command& command, service::ServerOptions& options) {
+    command.begin_section("Access");
     command.add_option("--tls-certificate", options.tls.certificate, "encrypt connections with this certificate")
         .type_name("FILE.pem");
     command.add_option("--tls-key", options.tls.key, "private key of the certificate").type_name("FILE.pem");
@@ -119,17 +123,18 @@ void add_access(Command& command, service::ServerOptions& options) {
         .type_name("FILE.pem");
     command
         .add_option("--tokens", options.token_file,
-                    "accept only clients with a token of this file; each line is NAME TOKEN")
+                    "accept only clients with a token of this file, whose lines are NAME TOKEN")
         .type_name("FILE");
     command
         .add_option("--roles", options.role_file,
-                    "give clients of this file other roles; each line is CLIENT owner, reader OWNER, operator or none")
+                    "file with lines CLIENT owner, reader OWNER, operator or none: other roles of clients")
         .type_name("FILE");
 }
 
 void add_watching(Command& command, ServeRequest& request) {
+    command.begin_section("Log and metrics");
     command
-        .add_option("--metrics", request.metrics, "serve metrics for Prometheus at this address, for this machine only")
+        .add_option("--metrics", request.metrics, "serve metrics for Prometheus at this address, to this machine only")
         .type_name("HOST:PORT");
     command
         .add_option(
@@ -155,25 +160,21 @@ void add_watching(Command& command, ServeRequest& request) {
 }  // namespace
 
 void add_serve_options(Command& command, ServeRequest& request) {
+    command.begin_section("Address");
     command.add_option("--config", request.config, "read options from a file with lines NAME = VALUE (TOML)")
         .type_name("FILE");
     command
         .add_option("--listen", request.listen,
-                    "address to listen on: unix:PATH or HOST:PORT; systemd: the socket that systemd passes")
+                    "address to listen on: unix:PATH, HOST:PORT, or systemd for the socket that it passes")
         .type_name("ADDRESS");
     add_engine_options(command, request.engine);
     command.find_option("--engine")->description("engine of the server: one of those that `octopair info` lists");
     add_seconds(
         command,
-        {"--rank-timeout", "SECONDS", "maximum time without a sign of life from a rank while a job runs (default 60)"},
+        {"--rank-timeout", "SECONDS", "longest time without a sign of life from a rank while a job runs (default 60)"},
         request.rank_silence, 1);
+    add_jobs(command, request.options);
     add_limits(command, request.options.limits);
-    add_seconds(command, {"--grace", "SECONDS", "time that running jobs get when the server stops (default 30)"},
-                request.options.grace, 0);
-    add_seconds(command,
-                {"--stall", "SECONDS", "maximum time that a client may take for its next message (default 60)"},
-                request.options.stall, 1);
-    add_state(command, request.options);
     add_access(command, request.options);
     add_watching(command, request);
 }

@@ -11,34 +11,30 @@
 namespace octopair::cli {
 
 void add_server_options(Command& command, ServerChoice& choice) {
-    command
-        .add_option("--token-file", choice.token_file,
-                    "with a server: file with the token (default: the token in $OCTOPAIR_TOKEN)")
+    command.begin_section("Server");
+    command.add_option("--token-file", choice.token_file, "file with the token (default: the token in $OCTOPAIR_TOKEN)")
         .type_name("FILE");
     command.add_flag("--token-in-clear", choice.options.token_in_clear,
-                     "with a server at a loopback address: send the token without encryption");
+                     "send the token to a loopback address without encryption");
     command
         .add_option("--server-user", choice.options.server_user,
-                    "with a server at a Unix socket: user that runs it, if neither this user nor root")
+                    "user that runs the server at a Unix socket, if neither this user nor root")
         .type_name("USER");
-    command.add_flag("--tls", choice.options.tls,
-                     "with a server: encrypt, and trust the system's certificate authorities");
-    command
-        .add_option("--tls-authority", choice.options.authority,
-                    "with a server: encrypt, and trust this certificate authority")
+    command.add_flag("--tls", choice.options.tls, "encrypt, and trust the system's certificate authorities");
+    command.add_option("--tls-authority", choice.options.authority, "encrypt, and trust this certificate authority")
         .type_name("FILE.pem");
-    command.add_option("--tls-certificate", choice.options.certificate, "with a server: certificate of this client")
+    command.add_option("--tls-certificate", choice.options.certificate, "certificate of this client")
         .type_name("FILE.pem");
-    command.add_option("--tls-key", choice.options.key, "with a server: private key of the client's certificate")
-        .type_name("FILE.pem");
+    command.add_option("--tls-key", choice.options.key, "private key of the certificate").type_name("FILE.pem");
     command
         .add_option(
             "--patience", [&choice](const std::string& text) { choice.patience = parse_length("--patience", text); },
-            "with a server: how long it may be unreachable after its first answer (default 30)")
+            "how long the server may be unreachable after its first answer (default 30)")
         .type_name("SECONDS");
 }
 
 void add_server_address(Command& command, ServerChoice& choice) {
+    command.begin_section("Server");
     command
         .add_option("--server", choice.address,
                     "address of the server: unix:PATH or HOST:PORT (default: $OCTOPAIR_SERVER)")

@@ -94,13 +94,16 @@ void add_submit(Command& program, Action& action) {
     Command command = program.add_subcommand("submit", "send a scene to a server, and collect its pairs later");
     const auto request = std::make_shared<SubmitRequest>();
     add_scene_options(command, request->what);
+    command.begin_section("Output");
     add_order_options(command, request->what, "find only the first N pairs");
     command.add_flag("--count-only", request->what.count_only, "find only the number of pairs");
+    command.add_flag("--quiet", request->what.quiet, "no progress on standard error");
+    command.begin_section("Server");
     command
         .add_option("--id", request->id, "id of the job; the same id again means the same job (default: a random id)")
         .type_name("UUID");
     add_server_address(command, request->server);
-    command.add_flag("--quiet", request->what.quiet, "no progress on standard error");
+    command.set_examples({"octopair submit boxes.npy --server unix:octopair/socket"});
     command.callback([request, &action] {
         check_server_named(request->server);
         action = [request] { return run_submit(*request); };

@@ -21,28 +21,24 @@ namespace {
 [[noreturn]] void refuse_view(const std::string& what) { throw Error(ErrorCode::usage, what); }
 
 void add_search_options(Command& command, DetectRequest& request) {
-    add_box_options(command, request);
-    add_stage_option(
-        command, request.pipeline,
-        "last stage of the pipeline: pairs, objects or features (default: features for mesh and JSON files)");
-    add_up_option(command, request.pipeline,
-                  "axis that points up: y or z (default: that of the file format, or else z)");
-    command
-        .add_option(
-            "--threads",
-            [&request](const std::string& text) {
-                request.engine.threads = unsigned(parse_count("--threads", text, max_threads));
-            },
-            "threads of the search (default 0: one per core)")
-        .type_name("N");
+    command.begin_section("What counts");
+    add_margin_option(command, request);
+    add_stage_option(command, request.pipeline,
+                     "last stage: pairs, objects or features (default: features for mesh and JSON files)");
 }
 
-void add_page_options(Command& command, ViewRequest& request) {
+void add_output_options(Command& command, ViewRequest& request) {
+    command.begin_section("Output");
     command.add_option("--export", request.export_page, "write the page with its data as one file, and do not serve it")
         .type_name("PAGE.html");
     command
         .add_option("--screenshot", request.screenshot, "write a picture of the first view, and do not serve the page")
         .type_name("PICTURE.png");
+    command.add_flag("--quiet", request.detect.quiet, "no progress and no summary on standard error");
+}
+
+void add_page_options(Command& command, ViewRequest& request) {
+    command.begin_section("Page");
     command
         .add_option(
             "--port",
@@ -52,7 +48,15 @@ void add_page_options(Command& command, ViewRequest& request) {
     command.add_option("--listen", request.listen, "serve other machines, too, at this numeric address; makes a token")
         .type_name("HOST:PORT");
     command.add_flag("--no-browser", request.no_browser, "only print the address of the page");
-    command.add_flag("--quiet", request.detect.quiet, "no progress on standard error");
+}
+
+void add_threads_option(Command& command, EngineChoice& choice) {
+    command.begin_section("Engine");
+    command
+        .add_option(
+            "--threads", [&choice](const std::string& text) { choice.threads = parse_threads(text); },
+            "threads of the search (default 0: one per core)")
+        .type_name("N");
 }
 
 bool is_address(const std::string& input) {
@@ -119,6 +123,7 @@ void check_scenes(ViewRequest& request) {
     if (recording != detect.inputs.end()) {
         if (detect.inputs.size() > 1) refuse_view(*recording + ": a recording is shown alone, without other inputs");
         check_no_search(detect, "a recording");
+        detect.pipeline.stage = Stage::pairs;
         return;
     }
     set_stage(detect);
@@ -141,14 +146,20 @@ std::string random_token() {
 }  // namespace
 
 void add_view_options(Command& command, ViewRequest& request) {
+    DetectRequest& detect = request.detect;
+    command.begin_section("Input");
     command
-        .add_option("INPUT", request.detect.inputs,
-                    "scene files, a recording, a result of octopair (also with its scene), or the address of a server")
+        .add_option("INPUT", detect.inputs,
+                    "scene files, a recording, a result (also with its scene), or the address of a server")
         .required();
+    add_objects_option(command, detect);
+    add_up_option(command, detect.pipeline, "axis that points up: y or z (default: that of the file, or z)");
+    add_search_options(command, detect);
+    add_output_options(command, request);
     add_page_options(command, request);
-    add_search_options(command, request.detect);
+    add_threads_option(command, detect.engine);
 #ifdef OCTOPAIR_WITH_SERVICE
-    add_server_options(command, request.detect.engine.server);
+    add_server_options(command, detect.engine.server);
 #endif
 }
 
