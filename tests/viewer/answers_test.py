@@ -5,11 +5,14 @@
 """
 import base64
 import gzip
+import itertools
 import json
 import math
 import os
+import pty
 import re
 import shutil
+import subprocess
 import time
 
 import scene_files
@@ -348,6 +351,46 @@ class Export(InFolder):
         self.run_program('detect', self.path('cubes.obj'), '--stage', 'features', '--quiet', '--output', self.path('found.jsonl'))
         self.check_export(self.path('found.jsonl'))
         self.check_export(self.path('cubes.obj'), self.path('found.jsonl'))
+
+    def written(self, *inputs):
+        """Exports a page, and returns what the line on standard error says after the name and the size."""
+        page = self.path('page.html')
+        done = self.run_program('view', *inputs, '--export', page)
+        self.assertEqual((done.returncode, done.stdout), (0, ''), done.stderr)
+        found = re.fullmatch(re.escape(f'wrote {page} (') + r'([\d.]+) (kB|MB)\): (.*)\n', done.stderr)
+        self.assertIsNotNone(found, done.stderr)
+        unit = {'kB': 1e3, 'MB': 1e6}[found[2]]
+        self.assertAlmostEqual(float(found[1]), os.path.getsize(page) / unit, delta=0.051)
+        return found[3]
+
+    def test_says_what_was_written(self):
+        scene_files.save_boxes(self.path('boxes.npy'), scene_files.random_boxes(1, 80))
+        pairs = len(self.detected(self.path('boxes.npy')))
+        self.assertEqual(self.written(self.path('boxes.npy')), f'80 objects, {pairs} pairs')
+        scene_files.save_moving(self.path('moving.npy'), scene_files.moving_boxes(2, 5, 30))
+        pairs = len(self.detected(self.path('moving.npy')))
+        self.assertEqual(self.written(self.path('moving.npy')), f'30 objects in each of 5 frames, {pairs} pairs')
+        scene_files.write_cubes_obj(self.path('cubes.obj'))
+        self.assertEqual(len(self.detected(self.path('cubes.obj'))), 1)
+        self.assertRegex(self.written(self.path('cubes.obj')), '^[0-9]+ objects, 1 collision$')
+
+    def test_shows_progress_on_a_terminal(self):
+        scene_files.save_moving(self.path('moving.npy'), scene_files.moving_boxes(2, 5, 30))
+        terminal, errors = pty.openpty()
+        with open(terminal, 'rb', buffering=0) as screen:
+            with subprocess.Popen([self.program, 'view', self.path('moving.npy'), '--export', self.path('page.html')],
+                                  stderr=errors) as process:
+                os.close(errors)
+                shown = b''
+                try:
+                    while part := screen.read(65536):
+                        shown += part
+                except OSError:  # the program has ended
+                    pass
+        self.assertEqual(process.returncode, 0)
+        activities = [match[0].decode() for match in itertools.groupby(re.findall(rb'\r([a-z ]+) \[[# ]*\] +\d+%', shown))]
+        self.assertEqual(activities, ['reading', 'preparing', 'finding pairs', 'counting pairs', 'writing'])
+        self.assertIn(b'wrote ', shown)
 
     def test_names_of_files_cannot_become_page(self):
         name = 'x<script>alert(1)<.npy'

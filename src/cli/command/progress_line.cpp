@@ -14,7 +14,7 @@ ProgressLine::ProgressLine(bool wanted) : terminal_(wanted && ::isatty(STDERR_FI
 void ProgressLine::show(std::string_view activity, double done) {
     if (!terminal_) return;
     const auto now = std::chrono::steady_clock::now();
-    if (shown_ && now - last_ < std::chrono::milliseconds(100)) return;
+    if (shown_ && activity == activity_ && now - last_ < std::chrono::milliseconds(100)) return;
     constexpr std::size_t width = 40;
     done = std::clamp(done, 0.0, 1.0);
     std::string bar(std::size_t(done * double(width)), '#');
@@ -22,6 +22,7 @@ void ProgressLine::show(std::string_view activity, double done) {
     fmt::print(stderr, "\r{} [{}] {:3.0f}%\x1b[K", activity, bar, done * 100);
     std::fflush(stderr);
     shown_ = true;
+    activity_ = activity;
     last_ = now;
 }
 

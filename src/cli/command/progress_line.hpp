@@ -1,7 +1,9 @@
-// ProgressLine: a progress bar on standard error. It is drawn only on a terminal, and at most ten times per second.
+// ProgressLine: a progress bar on standard error. It is drawn only on a terminal, and at most ten times per second for
+// each activity.
 #pragma once
 
 #include <chrono>
+#include <string>
 #include <string_view>
 
 namespace octopair::cli {
@@ -23,6 +25,7 @@ public:
 private:
     bool terminal_;
     bool shown_ = false;
+    std::string activity_;
     std::chrono::steady_clock::time_point last_ = {};
 };
 

@@ -238,7 +238,7 @@ TemporaryFolder::~TemporaryFolder() {
     std::filesystem::remove_all(path_, ignored);
 }
 
-std::string take_screenshot(const std::string& page_path, const std::stop_token& stop) {
+std::string take_screenshot(const std::string& page_path, const ProgressSink& progress, const std::stop_token& stop) {
     const TemporaryFolder folder;
     constexpr int width = 1280, height = 720;
     std::vector<std::string> words = {
@@ -251,16 +251,21 @@ std::string take_screenshot(const std::string& page_path, const std::stop_token&
         "--hide-scrollbars",
         "--enable-unsafe-swiftshader"};                        // draws by processor where there is no graphics card
     if (::geteuid() == 0) words.emplace_back("--no-sandbox");  // Chromium refuses to run as root with its sandbox
+    progress(0);
     BrowserPipe browser(std::move(words), stop);
     const auto target = browser.call("Target.createTarget", {{"url", "about:blank"}});
     const auto attached =
         browser.call("Target.attachToTarget", {{"targetId", target.value("targetId", "")}, {"flatten", true}});
     const std::string session = attached.value("sessionId", "");
+    progress(0.25);  // the browser runs
     browser.call("Emulation.setDeviceMetricsOverride",
                  {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}}, session);
     browser.call("Page.navigate", {{"url", "file://" + page_path}}, session);
+    progress(0.5);  // the page is loaded
     wait_for_picture(browser, session);
+    progress(0.75);
     const auto picture = browser.call("Page.captureScreenshot", {{"format", "png"}}, session);
+    progress(1);
     return decoded_base64(picture.value("data", ""));
 }
 

@@ -161,7 +161,6 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
     double read_seconds = 0;
     {
         const Timed timed(read_seconds);
-        progress.show("reading", 0);
         io::SceneContent content{request.detect.mesh_objects, false,
                                  [&](double done) { progress.show("reading", done); }};
 #ifdef OCTOPAIR_WITH_PIPELINE
@@ -181,6 +180,7 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
     view.contents.details = [inputs](std::uint32_t object) { return shown_details(inputs->set, object); };
     view.contents.facts.push_back({"seconds.read", read_seconds});
     if (request.result.empty()) {
+        progress.show("preparing", 0);
         view.finder = std::make_unique<SearchFinder>(inputs);
         return view;
     }

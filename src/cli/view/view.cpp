@@ -31,6 +31,7 @@ using namespace std::chrono_literals;
 constexpr std::string_view finding_pairs = "finding pairs";
 
 LoadedView load(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop) {
+    progress.show("reading", 0);
     if (request.detect.inputs.empty()) return load_result(request, stop);
     if (request.detect.inputs.size() == 1 && request.result.empty() && is_recording(request.detect.inputs.front())) {
         return load_recording(request, progress, stop);
@@ -143,38 +144,76 @@ void serve_scene(const ViewRequest& request, LoadedView& view, ProgressLine& pro
     wait_until_stopped(stop);
 }
 
-/// Writes the page of --export and the picture of --screenshot.
-void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
-    viewer::FrameSource source(std::move(view.contents), *view.finder);
+/// Finds the pairs of all frames.
+void find_all(viewer::FrameSource& source, ProgressLine& progress, const std::stop_token& stop) {
     source.load([&](double done) { progress.show(finding_pairs, done); });
     if (source.moving()) {
         const auto show = [&](std::uint64_t done) {
-            progress.show(finding_pairs, double(done) / double(source.frames()));
+            progress.show("counting pairs", double(done) / double(source.frames()));
         };
         source.count_frames(show, stop);
     }
     throw_if_stopped(stop);
-    progress.show("writing", 0);
+}
+
+std::string size_text(std::size_t bytes) {
+    if (bytes < 1000) return fmt::format("{} bytes", bytes);
+    return bytes < 1'000'000 ? fmt::format("{:.1f} kB", double(bytes) / 1e3)
+                             : fmt::format("{:.1f} MB", double(bytes) / 1e6);
+}
+
+std::string counted(std::uint64_t count, std::string_view what) {
+    return fmt::format("{} {}{}", grouped(count), what, count == 1 ? "" : "s");
+}
+
+/// Returns the number of objects, pairs and frames. `pair`: the word for a pair. `written`: number of frames in the file.
+std::string content_text(const viewer::FrameSource& source, std::string_view pair, std::uint64_t written) {
+    const auto [pairs, more] = source.pair_total();
+    std::string text = counted(source.objects(), "object");
+    if (source.moving()) text += fmt::format(" in each of {}", counted(source.frames(), "frame"));
+    text += ", " + counted(pairs, pair) + (more ? " (more exist)" : "");
+    if (written < source.frames()) text += fmt::format("; only the first {} fit", counted(written, "frame"));
+    return text;
+}
+
+/// Returns the picture of a page with this text.
+std::string draw(const std::string& page, ProgressLine& progress, const std::stop_token& stop) {
+    const TemporaryFolder folder;
+    io::AtomicFile file(folder.path() + "/page.html");
+    file.write(page);
+    file.commit();
+    return take_screenshot(
+        file.path(), [&](double done) { progress.show("drawing", done); }, stop);
+}
+
+/// Writes the page of --export and the picture of --screenshot.
+void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& progress, const std::stop_token& stop) {
     std::optional<io::AtomicFile> page, picture;
     if (!request.export_page.empty()) page.emplace(request.export_page);
     if (!request.screenshot.empty()) picture.emplace(request.screenshot);
-    if (page) {
-        viewer::write_page(source, [&](std::string_view text) { page->write(text); });
-    }
-    if (picture) {
-        const TemporaryFolder folder;
-        const std::string path = folder.path() + "/page.html";
-        {
-            io::AtomicFile copy(path);
-            viewer::write_page(source, [&](std::string_view text) { copy.write(text); });
-            copy.commit();
-        }
-        progress.show("drawing", 0);
-        picture->write(take_screenshot(path, stop));
-    }
-    if (page) page->commit();
-    if (picture) picture->commit();
-    progress.clear();
+    const bool exact = view.contents.contacts || stage_of(request.detect) != Stage::pairs;
+    viewer::FrameSource source(std::move(view.contents), *view.finder);
+    find_all(source, progress, stop);
+    std::string text;
+    const std::uint64_t written = viewer::write_page(
+        source, [&](std::string_view part) { text += part; }, viewer::max_page_bytes,
+        [&](double done) {
+            throw_if_stopped(stop);
+            progress.show("writing", done);
+        });
+    const auto finish = [&](std::optional<io::AtomicFile>& file, const std::string& bytes, std::uint64_t frames) {
+        if (!file) return;
+        file->write(bytes);
+        file->commit();
+        progress.clear();
+        if (request.detect.quiet) return;
+        fmt::print(stderr, "wrote {} ({}): {}\n", file->path(), size_text(bytes.size()),
+                   content_text(source, exact ? "collision" : "pair", frames));
+    };
+    std::string drawn;
+    if (picture) drawn = draw(text, progress, stop);
+    finish(page, text, written);
+    finish(picture, drawn, source.frames());
 }
 
 int run_view(const ViewRequest& request) {
@@ -201,6 +240,8 @@ void add_view(Command& program, Action& action) {
     Command command = program.add_subcommand("view", "show a scene, a result, a recording or a server in a browser");
     const auto request = std::make_shared<ViewRequest>();
     add_view_options(command, *request);
+    command.set_examples(
+        {"octopair view parts.glb", "octopair view boxes.npy pairs.npy", "octopair view parts.glb --export page.html"});
     command.callback([request, &action] {
         check_view_options(*request);
         action = [request] { return run_view(*request); };

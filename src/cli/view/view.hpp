@@ -81,9 +81,9 @@ std::vector<std::pair<std::string, std::string>> shown_details(const InputSet& s
 void present(const ViewRequest& request, const viewer::PageServer& server);
 
 /// Returns the picture of a page (PNG, 1280 x 720), as a browser without a window draws it. The browser is Chromium or Chrome, or
-/// the program that OCTOPAIR_BROWSER names.
+/// the program that OCTOPAIR_BROWSER names. `progress` gets the part of the steps that are done.
 /// Throws: Error{io_failed} if there is no such browser, or if it fails; Error{cancelled} soon after a stop request.
-std::string take_screenshot(const std::string& page_path, const std::stop_token& stop);
+std::string take_screenshot(const std::string& page_path, const ProgressSink& progress, const std::stop_token& stop);
 
 /// A folder in the system's folder for temporary files, which is removed in the end.
 class TemporaryFolder {

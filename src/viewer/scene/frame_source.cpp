@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <new>
+#include <numeric>
 
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
@@ -67,7 +68,7 @@ void FrameSource::load(const ProgressSink& progress) {
     bounds_ = bounds.value_or(no_bounds());
     has_bounds_ = bounds.has_value();
     origin_ = centre_of(bounds_);
-    first_pairs_ = first->data.pair_count;
+    first_pairs_ = {first->data.pair_count, first->data.more_pairs};
     first_facts_ = first->data.facts;
     contents_.contacts |= has_contacts(first->data.findings);
     if (shown_.size() < contents_.objects) {
@@ -75,7 +76,8 @@ void FrameSource::load(const ProgressSink& progress) {
                                     grouped_number(contents_.objects) + " boxes are drawn only where you zoom in.");
     }
     if (first->data.more_pairs) {
-        contents_.notices.push_back("Only the first " + grouped_number(first_pairs_) + " pairs are shown; more exist.");
+        contents_.notices.push_back("Only the first " + grouped_number(first_pairs_.pairs) +
+                                    " pairs are shown; more exist.");
     }
     if (!contents_.moving) first->began.clear();
     kept_.push_back(std::move(first));
@@ -139,6 +141,7 @@ FrameSource::FramePointer FrameSource::count_frame(std::uint64_t number, const F
         has_bounds_ = true;
     }
     counts_.pairs.push_back(now->data.pair_count);
+    counts_.more_pairs |= now->data.more_pairs;
     counts_.began.push_back(now->began.size());
     counts_.ended.push_back(now->ended.size());
     return now;
@@ -161,6 +164,12 @@ void FrameSource::count_frames(const std::function<void(std::uint64_t)>& more, c
 std::uint64_t FrameSource::counted() const {
     const std::lock_guard lock(counts_mutex_);
     return counts_.pairs.size();
+}
+
+FrameSource::PairTotal FrameSource::pair_total() const {
+    const std::lock_guard lock(counts_mutex_);
+    if (counts_.pairs.empty()) return first_pairs_;
+    return {std::accumulate(counts_.pairs.begin(), counts_.pairs.end(), std::uint64_t(0)), counts_.more_pairs};
 }
 
 const Octants& FrameSource::octants(Frame& frame) {
@@ -243,7 +252,7 @@ Answer FrameSource::view_answer() const {
                 {"events", contents_.moving},
                 {"search", !export_},
                 {"near", !export_ && shown_.size() < contents_.objects}};
-    Json summary = {{"pairs", first_pairs_}};
+    Json summary = {{"pairs", first_pairs_.pairs}};
     add_facts(summary, contents_.facts, !export_);
     add_facts(summary, first_facts_, !export_);
     std::vector<std::string> notices = contents_.notices;

@@ -33,6 +33,14 @@ public:
     /// Returns the number of frames that are counted so far.
     std::uint64_t counted() const;
     std::uint64_t frames() const { return finder_.frames(); }
+    std::uint64_t objects() const { return contents_.objects; }
+    /// Number of pairs of all counted frames, or of the first frame if none is counted.
+    struct PairTotal {
+        std::uint64_t pairs = 0;
+        bool more = false;  ///< true if there are more pairs than the finder found
+    };
+    /// Requires: the source is loaded.
+    PairTotal pair_total() const;
     bool moving() const { return contents_.moving; }
     /// Returns all addresses of one frame, or of the whole scene, for an exported page.
     std::vector<std::string> addresses() const;
@@ -90,7 +98,7 @@ private:
     Point3d origin_ = {};
     Box3d bounds_ = {};
     bool has_bounds_ = false;  // true after a frame with objects was found
-    std::uint64_t first_pairs_ = 0;
+    PairTotal first_pairs_;
     std::vector<Fact> first_facts_;
     std::optional<Export> export_;
     std::atomic<bool> loading_ = true;
@@ -99,7 +107,8 @@ private:
     std::deque<FramePointer> kept_;  // in the order in which they were found
     struct Counts {
         std::vector<std::uint64_t> pairs, began, ended;
-        std::string fault;  // why no more frames are counted; empty: nothing has failed
+        bool more_pairs = false;  // true if a frame has more pairs than the finder found
+        std::string fault;        // why no more frames are counted; empty: nothing has failed
     };
     mutable std::mutex counts_mutex_;
     Counts counts_;

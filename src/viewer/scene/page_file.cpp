@@ -1,5 +1,6 @@
 #include "viewer/scene/page_file.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "octopair/error.hpp"
@@ -18,32 +19,50 @@ std::string element(FrameSource& source, const std::string& address) {
            base64(gzip(answer->body, 9)) + "</script>\n";
 }
 
-std::string elements(FrameSource& source, const std::vector<std::string>& addresses) {
-    std::string all;
-    for (const std::string& address : addresses) all += element(source, address);
-    return all;
-}
+/// Encodes the data of addresses. Reports the progress for an expected number of addresses.
+class Encoder {
+public:
+    Encoder(FrameSource& source, std::uint64_t expected, const ProgressSink& progress)
+        : source_(source), expected_(expected), progress_(progress) {}
+
+    std::string elements(const std::vector<std::string>& addresses) {
+        std::string all;
+        for (const std::string& address : addresses) {
+            all += element(source_, address);
+            if (progress_) progress_(std::min(1.0, double(++encoded_) / double(expected_)));
+        }
+        return all;
+    }
+
+private:
+    FrameSource& source_;
+    std::uint64_t expected_, encoded_ = 0;
+    const ProgressSink& progress_;
+};
 
 }  // namespace
 
-void write_page(FrameSource& source, const std::function<void(std::string_view)>& write, std::uint64_t most) {
+std::uint64_t write_page(FrameSource& source, const std::function<void(std::string_view)>& write, std::uint64_t most,
+                         const ProgressSink& progress) {
     const std::string html = page();
     constexpr std::string_view marker = "<!-- data -->";
     const std::size_t place = html.find(marker);
     const std::uint64_t frames = source.frames();
     source.prepare_export({frames, {}});
+    const std::vector<std::string> of_scene = source.addresses(), of_first = source.addresses_of(0);
+    Encoder encoder(source, 2 * of_scene.size() + frames * of_first.size(), progress);
     // The data of source.addresses() hold the number of exported frames, which is known only after the frames are added. So encode the
     // frames first.
-    std::string data = elements(source, source.addresses_of(0));
+    std::string data = encoder.elements(of_first);
     std::uint64_t written = 1;
-    std::uint64_t fixed = html.size() + elements(source, source.addresses()).size();
+    std::uint64_t fixed = html.size() + encoder.elements(of_scene).size();
     const auto refuse_large = [&] {
         throw Error(ErrorCode::resource_limit, "the page would exceed " + std::to_string(most >> 20) +
                                                    " MiB; export fewer objects, or look at the scene without --export");
     };
     if (fixed + data.size() > most) refuse_large();
     for (; written < frames; ++written) {
-        const std::string next = elements(source, source.addresses_of(written));
+        const std::string next = encoder.elements(source.addresses_of(written));
         if (fixed + data.size() + next.size() > most) break;
         data += next;
     }
@@ -54,9 +73,10 @@ void write_page(FrameSource& source, const std::function<void(std::string_view)>
     }
     source.prepare_export(std::move(how));
     write(std::string_view(html).substr(0, place));
-    write(elements(source, source.addresses()));
+    write(encoder.elements(of_scene));
     write(data);
     write(std::string_view(html).substr(place + marker.size()));
+    return written;
 }
 
 }  // namespace octopair::viewer
