@@ -1,5 +1,7 @@
 // Tests `octopair detect` on valid input.
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <regex>
 
 #include "cli/program.hpp"
 #include "support/compare.hpp"
@@ -171,6 +173,50 @@ TEST_F(Detect, EmptyScenes) {
     }
     write_file(file("noframes.npy"), npy_of<float>(io::NpyType::float32, {0, 3, 6}, {}));
     EXPECT_EQ(run("detect noframes.npy --quiet").out, "frame,a,b\n");
+}
+
+/// Returns the number of the last digit's units in the times of a line "NAME TOTAL = NAME TIME + ... + other TIME" of a summary: first
+/// the total, then the parts. Returns nothing if there is no such line.
+std::vector<long> times_of(const std::string& summary, const std::string& line) {
+    std::smatch found;
+    if (!std::regex_search(summary, found, std::regex("\n" + line + " +([^\n]* = [^\n]* other [^\n]*)\n"))) return {};
+    const std::string text = found[1];
+    const std::regex time("([0-9]+)\\.([0-9]+) (ms|s)\\b");
+    std::vector<long> times;
+    for (std::sregex_iterator each(text.begin(), text.end(), time), end; each != end; ++each) {
+        times.push_back(std::stol((*each)[1].str() + (*each)[2].str()));
+    }
+    return times;
+}
+
+TEST_F(Detect, TimesOfASummaryAddUp) {
+    ASSERT_EQ(run("generate uniform --objects 20000 -o a.npy").status, 0);
+    ASSERT_EQ(run("generate brownian --objects 500 --frames 7 -o moving.npy").status, 0);
+    write_file(file("meshes.obj"),
+               "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no b\nv 0 0 -1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n");
+    std::vector<std::string> runs = {
+        "a.npy -o p.npy",      "a.npy --count-only --threads 1", "a.npy --verify --order octal -o p.npy",
+        "moving.npy -o m.csv", "moving.npy --events -o e.csv",   "a.npy --against a.npy -o p.csv"};
+#ifdef OCTOPAIR_WITH_PIPELINE
+    runs.insert(runs.end(), {"meshes.obj --stage features --verify -o c.jsonl", "a.npy --exclude rules.json -o p.csv"});
+    write_file(file("rules.json"), R"({"exclude": []})");
+#endif
+#ifdef OCTOPAIR_WITH_PROCESSES
+    runs.insert(runs.end(), {"a.npy --engine processes -o p.npy", "moving.npy --engine processes --events -o e.csv"});
+#endif
+    for (const std::string& arguments : runs) {
+        const Outcome outcome = run("detect " + arguments + " --stats s.json");
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const auto seconds = nlohmann::json::parse(content("s.json"))["seconds"];
+        const double unit = seconds["total"] < 10 ? 1e5 : 1e3;
+        for (const auto& [line, name] : {std::pair("time", "total"), std::pair("detect", "detect")}) {
+            const std::vector<long> times = times_of(outcome.err, line);
+            if (times.empty() && has_text(arguments, "--events") && line == std::string("detect")) continue;
+            ASSERT_GE(times.size(), 4u) << arguments << "\n" << outcome.err;
+            EXPECT_EQ(times[0], long(double(seconds[name]) * unit)) << outcome.err;
+            EXPECT_EQ(std::accumulate(times.begin() + 1, times.end(), 0L), times[0]) << outcome.err;
+        }
+    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "cli/command/option_values.hpp"
 #include "io/results/collision_row.hpp"
@@ -75,6 +76,41 @@ std::string duration(double seconds) {
     return seconds < 0.1 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.3f} s", seconds);
 }
 
+/// Part of a time.
+struct TimePart {
+    std::string_view name;
+    double seconds;
+};
+
+/// Prints times that add up. All of them have one unit and the same number of digits, and are rounded down: so the sum of the parts
+/// is never more than the total, and `other` is the rest.
+class TimeScale {
+public:
+    explicit TimeScale(double total) : in_seconds_(total >= 10) {}
+
+    std::string text(double seconds) const { return text(ticks(seconds)); }
+    /// Returns "TOTAL = NAME TIME + ... + other TIME".
+    std::string sum_text(double total, std::span<const TimePart> parts) const {
+        std::int64_t sum = 0;
+        std::string terms;
+        for (const auto& [name, seconds] : parts) {
+            sum += ticks(seconds);
+            terms += fmt::format("{} {} + ", name, text(seconds));
+        }
+        const std::int64_t whole = std::max(ticks(total), sum);
+        return fmt::format("{} = {}other {}", text(whole), terms, text(whole - sum));
+    }
+
+private:
+    std::int64_t ticks(double seconds) const { return std::int64_t(seconds * (in_seconds_ ? 1e3 : 1e5)); }
+    std::string text(std::int64_t ticks) const {
+        return in_seconds_ ? fmt::format("{:.3f} s", double(ticks) / 1e3)
+                           : fmt::format("{:.2f} ms", double(ticks) / 1e2);
+    }
+
+    bool in_seconds_;
+};
+
 std::string speed(double objects_per_second) {
     return objects_per_second < 1e6 ? grouped(std::uint64_t(objects_per_second)) + " objects/s"
                                     : fmt::format("{:.1f} million objects/s", objects_per_second / 1e6);
@@ -109,15 +145,22 @@ nlohmann::ordered_json filters_json(const DetectReport& report) {
     return filters;
 }
 
-/// Returns the line with the seconds of each part of the run.
+/// Returns the lines with the seconds of each part of the run, and of each step of the search.
 std::string time_text(const DetectReport& report) {
     const DetectSeconds& seconds = report.seconds;
-    std::string text = fmt::format("time        {} = read {}", duration(seconds.total), duration(seconds.read));
-    if (!report.filters.empty()) text += fmt::format(" + prepare {}", duration(seconds.prepare));
-    text += fmt::format(" + detect {}", duration(seconds.detect));
-    if (!report.filters.empty()) text += fmt::format(" + filter {}", duration(seconds.filter));
-    if (report.verified) text += fmt::format(" + verify {}", duration(seconds.verify));
-    return text + fmt::format(" + write {} + other\n", duration(seconds.write));
+    const TimeScale scale(seconds.total);
+    std::vector<TimePart> parts = {{"read", seconds.read}};
+    if (!report.filters.empty()) parts.push_back({"prepare", seconds.prepare});
+    parts.push_back({"detect", seconds.detect});
+    if (!report.filters.empty()) parts.push_back({"filter", seconds.filter});
+    if (report.verified) parts.push_back({"verify", seconds.verify});
+    parts.push_back({"write", seconds.write});
+    std::string text = fmt::format("time        {}\n", scale.sum_text(seconds.total, parts));
+    if (report.events) return text;
+    const StepSeconds& steps = report.steps;
+    const std::array<TimePart, 4> of_steps = {
+        {{"encode", steps.encode}, {"count", steps.count}, {"scatter", steps.scatter}, {"scan", steps.scan}}};
+    return text + fmt::format("detect      {}\n", scale.sum_text(seconds.detect, of_steps));
 }
 
 /// Returns the line of --verify: what was checked, and what was not.
@@ -126,7 +169,7 @@ std::string verified_text(const DetectReport& report) {
     std::string text = fmt::format("verified    {} {} by a second algorithm", grouped(report.candidates),
                                    report.filters.empty() ? "pairs" : "candidates");
     if (report.collisions_verified) text += fmt::format(", {} collisions by certificates", grouped(report.pairs));
-    text += fmt::format(" in {}", duration(report.seconds.verify));
+    text += fmt::format(" in {}", TimeScale(report.seconds.total).text(report.seconds.verify));
     if (!report.not_checked.empty()) text += fmt::format(" (not checked: {})", report.not_checked);
     return text + '\n';
 }
@@ -185,7 +228,6 @@ std::string filters_text(const DetectReport& report) {
 
 std::string summary_text(const DetectReport& report) {
     const DetectSeconds& seconds = report.seconds;
-    const StepSeconds& steps = report.steps;
     std::string text = fmt::format("objects     {}", grouped(report.objects));
     if (report.moving) text += fmt::format(" in each of {} frames", grouped(report.frames));
     text += fmt::format("\npairs       {}", grouped(report.pairs));
@@ -200,10 +242,6 @@ std::string summary_text(const DetectReport& report) {
     }
     for (const std::string& warning : report.warnings) text += fmt::format("warning     {}\n", warning);
     text += exact_text(report) + filters_text(report) + verified_text(report) + time_text(report);
-    if (!report.events) {
-        text += fmt::format("detect      encode {}, count {}, scatter {}, scan {}\n", duration(steps.encode),
-                            duration(steps.count), duration(steps.scatter), duration(steps.scan));
-    }
     const double objects = double(report.objects) * double(report.frames);
     if (seconds.detect > 0) text += fmt::format("throughput  {}", speed(objects / seconds.detect));
     const EngineDescription& engine = report.engine;
