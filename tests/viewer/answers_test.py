@@ -319,7 +319,7 @@ class Export(InFolder):
                     answer.pop('seconds', None)
                     self.assertEqual(json.loads(body), answer, address)
                     continue
-                query = '?count=1000' if address.startswith('collisions/') else ''
+                query = '?count=1000&sort=worst' if address.startswith('collisions/') else ''
                 self.assertEqual(body, view.request(f'/{address}{query}')[2], address)
         scene = json.loads(data['view.json'])
         for frame in range(scene['frames']):

@@ -1,7 +1,9 @@
 // Answers about one frame against brute force on the frame.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -111,11 +113,43 @@ void describe(Shown& scene, Random& random) {
         Finding finding;
         finding.collision_class = CollisionClass(random() % 7);
         finding.depth = double(random() % 10) / 8;
+        finding.depth_kind = DepthKind(random() % 3);
+        finding.depth_at_most = finding.depth + double(random() % 3);
+        finding.more_contacts = random() % 2 == 0;
         finding.distance = double(random() % 10) / 8;
         finding.contacts.resize(random() % 20);
         for (Contact& contact : finding.contacts) contact.point = {random_number(random, 0, 1), 2, 3};
         scene.data.findings.push_back(finding);
     }
+}
+
+/// The shortest translation along an axis that separates the boxes of a pair.
+double true_overlap(const Shown& scene, Pair pair) {
+    const Box3d &a = scene.boxes[pair.a], &b = scene.boxes[pair.b];
+    double overlap = std::numeric_limits<double>::max();
+    for (std::size_t k = 0; k < 3; ++k) overlap = std::min({overlap, a.max[k] - b.min[k], b.max[k] - a.min[k]});
+    return overlap;
+}
+
+bool is_known(const Finding& finding) { return finding.depth_kind != DepthKind::unknown || finding.depth > 0; }
+
+/// Whether a row must tell how far the boxes of its pair overlap.
+bool has_overlap(const Shown& scene, std::size_t i) {
+    if (scene.data.findings.empty()) return true;
+    const Finding& finding = scene.data.findings[i];
+    const bool untested =
+        finding.collision_class == CollisionClass::unknown || finding.collision_class == CollisionClass::collision;
+    return untested && !is_known(finding);
+}
+
+/// The key of a pair in the order "worst": lower is worse.
+std::pair<std::size_t, double> worst_key(const Shown& scene, std::size_t i) {
+    using enum CollisionClass;
+    constexpr std::array order = {penetrating, contained, duplicate, collision, unknown, touching, clearance};
+    const Finding none, &finding = scene.data.findings.empty() ? none : scene.data.findings[i];
+    const auto place = std::find(order.begin(), order.end(), finding.collision_class) - order.begin();
+    if (finding.collision_class == clearance) return {place, finding.distance};
+    return {place, has_overlap(scene, i) ? -true_overlap(scene, scene.data.pairs[i]) : -finding.depth};
 }
 
 /// Returns the positions of the pairs that a table must have, in order.
@@ -132,7 +166,13 @@ std::vector<std::size_t> true_rows(const Shown& scene, const RowRequest& request
     for (std::size_t i = 0; i < scene.data.pairs.size(); ++i) {
         const auto [a, b] = scene.data.pairs[i];
         if (request.object && *request.object != a && *request.object != b) continue;
+        if (request.with && *request.with != a && *request.with != b) continue;
         if (request.text.empty() || matches(a) || matches(b)) rows.push_back(i);
+    }
+    if (request.sort == RowRequest::Sort::worst) {
+        std::stable_sort(rows.begin(), rows.end(),
+                         [&](std::size_t x, std::size_t y) { return worst_key(scene, x) < worst_key(scene, y); });
+        return rows;
     }
     const auto key = [&](std::size_t i) {
         if (request.sort == RowRequest::Sort::depth) return -scene.data.findings[i].depth;
@@ -141,6 +181,24 @@ std::vector<std::size_t> true_rows(const Shown& scene, const RowRequest& request
     };
     std::stable_sort(rows.begin(), rows.end(), [&](std::size_t x, std::size_t y) { return key(x) < key(y); });
     return rows;
+}
+
+/// The depth of a pair must not look exact if it is a bound.
+void expect_depth(const Json& row, const Finding& finding) {
+    const bool meets = finding.collision_class > CollisionClass::clearance;
+    ASSERT_EQ(row.contains("depth"), meets && is_known(finding));
+    if (row.contains("depth")) {
+        EXPECT_EQ(row["depth"], finding.depth);
+    }
+    const std::string kinds[] = {"", "least", "at_least"};
+    EXPECT_EQ(row.value("depth_kind", ""), meets ? kinds[std::size_t(finding.depth_kind)] : "");
+    const bool bounded = meets && finding.depth_kind == DepthKind::at_least && finding.depth_at_most > finding.depth;
+    ASSERT_EQ(row.contains("depth_at_most"), bounded);
+    if (bounded) {
+        EXPECT_EQ(row["depth_at_most"], finding.depth_at_most);
+    }
+    const bool more = !finding.contacts.empty() && (finding.more_contacts || finding.contacts.size() > 16);
+    EXPECT_EQ(row.value("more_contacts", false), more);
 }
 
 void expect_rows(const Shown& scene, const std::string& query) {
@@ -158,7 +216,11 @@ void expect_rows(const Shown& scene, const std::string& query) {
         EXPECT_EQ(row["a"], pair.a) << query << " row " << i;
         EXPECT_EQ(row["b"], pair.b) << query << " row " << i;
         EXPECT_EQ(row["name_a"], scene.contents.names[pair.a]);
-        EXPECT_EQ(row.value("depth", finding.depth), finding.depth);
+        expect_depth(row, finding);
+        ASSERT_EQ(row.contains("overlap"), has_overlap(scene, expected[from + i]));
+        if (row.contains("overlap")) {
+            EXPECT_EQ(row["overlap"], true_overlap(scene, pair));
+        }
         EXPECT_EQ(row.contains("contacts") ? row["contacts"].size() : 0,
                   std::min<std::size_t>(16, finding.contacts.size()));
         EXPECT_EQ(row.contains("change"), std::count(scene.began.begin(), scene.began.end(), pair) > 0);
@@ -170,9 +232,10 @@ TEST(CollisionTable, SelectsAndSorts) {
     for (int round = 0; round < 5; ++round) {
         Shown scene(random, 150, 100);
         describe(scene, random);
-        for (const std::string sort : {"", "&sort=pair", "&sort=depth", "&sort=began"}) {
-            for (const std::string filter : {"", "&q=hull", "&q=PLATE+1", "&q=7", "&q=nothing", "&object=7",
-                                             "&object=149", "&object=150", "&object=99999999999", "&object=3&q=beam"}) {
+        for (const std::string sort : {"", "&sort=pair", "&sort=worst", "&sort=depth", "&sort=began"}) {
+            for (const std::string filter :
+                 {"", "&q=hull", "&q=PLATE+1", "&q=7", "&q=nothing", "&object=7", "&object=149", "&object=150",
+                  "&object=99999999999", "&object=3&q=beam", "&object=3&with=7", "&with=7", "&object=7&with=3"}) {
                 expect_rows(scene, "?count=1000" + sort + filter);
                 expect_rows(scene, "?from=3&count=5" + sort + filter);
             }
@@ -183,6 +246,64 @@ TEST(CollisionTable, SelectsAndSorts) {
     }
 }
 
+TEST(CollisionTable, BoxesWithoutExactTests) {
+    Random random(9);
+    Shown scene(random, 150, 100);
+    const Json rows =
+        json_in(collision_rows(scene.frame(), viewer::row_request(address_of("?count=1000&sort=worst"))))["rows"];
+    const auto expected = true_rows(scene, viewer::row_request(address_of("?sort=worst")));
+    ASSERT_EQ(rows.size(), expected.size());
+    ASSERT_GT(rows.size(), 10u);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Pair pair = scene.data.pairs[expected[i]];
+        EXPECT_EQ(rows[i]["a"], pair.a) << i;
+        EXPECT_EQ(rows[i]["b"], pair.b) << i;
+        EXPECT_EQ(rows[i]["overlap"], true_overlap(scene, pair));
+        // The page needs the boxes of objects that it does not show.
+        const bool hidden =
+            scene.shown.row_of(pair.a) == ShownObjects::none || scene.shown.row_of(pair.b) == ShownObjects::none;
+        ASSERT_EQ(rows[i].contains("boxes"), hidden);
+        if (hidden) {
+            EXPECT_EQ(rows[i]["boxes"][1]["max"][2], scene.boxes[pair.b].max[2]);
+        }
+    }
+    scene.contents.has_boxes = false;  // the boxes only surround contacts
+    EXPECT_FALSE(json_in(collision_rows(scene.frame(), {}))["rows"][0].contains("overlap"));
+}
+
+TEST(CollisionTable, NearestPointsOfObjectsThatAreApart) {
+    Random random(10);
+    Shown scene(random, 40, 40);
+    describe(scene, random);
+    Finding& finding = scene.data.findings.front();
+    finding.collision_class = CollisionClass::clearance;
+    finding.nearest = {Point3d{1, 2, 3}, Point3d{1, 2, 4}};
+    const Json row = json_in(collision_rows(scene.frame(), {}))["rows"][0];
+    EXPECT_EQ(row["nearest"], Json({{1.0, 2.0, 3.0}, {1.0, 2.0, 4.0}}));
+}
+
+TEST(CollisionTable, WorstClassOfEachObject) {
+    Random random(11);
+    Shown scene(random, 150, 100);
+    describe(scene, random);
+    using enum CollisionClass;
+    constexpr std::array order = {penetrating, contained, duplicate, collision, unknown, touching, clearance};
+    const auto rows = array_of<std::uint8_t>(class_rows(scene.frame()).body);
+    ASSERT_EQ(rows.size(), scene.shown.size());
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        const std::uint32_t object = scene.shown.objects()[row];
+        std::uint8_t expected = 255;
+        for (auto found = order.rbegin(); found != order.rend(); ++found) {
+            for (std::size_t i = 0; i < scene.data.pairs.size(); ++i) {
+                const auto [a, b] = scene.data.pairs[i];
+                const bool fits = (a == object || b == object) && scene.data.findings[i].collision_class == *found;
+                if (fits) expected = std::uint8_t(*found);
+            }
+        }
+        EXPECT_EQ(rows[row], expected) << object;
+    }
+}
+
 TEST(CollisionTable, GivesAtMostAThousandRows) {
     EXPECT_EQ(viewer::row_request(address_of("?count=100000")).count, viewer::max_rows);
     EXPECT_EQ(viewer::row_request(address_of("")).count, 100u);
@@ -190,7 +311,7 @@ TEST(CollisionTable, GivesAtMostAThousandRows) {
 
 TEST(CollisionTable, RefusesInvalidParameters) {
     for (const std::string query : {"?from=-1", "?from=a", "?count=1.5", "?count=%20", "?object=x", "?object=-1",
-                                    "?sort=size", "?sort=Depth", "?from=99999999999999999999"}) {
+                                    "?sort=size", "?sort=Depth", "?with=x", "?from=99999999999999999999"}) {
         (void)error_of(ErrorCode::bad_input, [&] { viewer::row_request(address_of(query)); });
     }
 }

@@ -1,5 +1,8 @@
 // The table of collisions of a frame.
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 #include "octopair/error.hpp"
 #include "viewer/scene/frame_answers.hpp"
@@ -17,12 +20,31 @@ Json contact_json(const Contact& contact) {
     return {{"point", json_of(contact.point)}, {"normal", json_of(contact.normal)}, {"depth", contact.depth}};
 }
 
+/// How bad the classes are, indexed by CollisionClass: objects that overlap are worse than objects that touch.
+constexpr std::array<std::uint8_t, collision_classes> severities = {2, 0, 3, 1, 6, 5, 4};
+
+bool has_depth(const Finding& finding) { return finding.depth_kind != DepthKind::unknown || finding.depth > 0; }
+
+void add_depth(Json& row, const Finding& finding) {
+    if (!has_depth(finding)) return;
+    row["depth"] = finding.depth;
+    if (finding.depth_kind == DepthKind::least) row["depth_kind"] = "least";
+    if (finding.depth_kind != DepthKind::at_least) return;
+    row["depth_kind"] = "at_least";
+    if (finding.depth_at_most > finding.depth && std::isfinite(finding.depth_at_most)) {
+        row["depth_at_most"] = finding.depth_at_most;
+    }
+}
+
 void add_finding(Json& row, const Finding& finding) {
     row["class"] = class_words[std::size_t(finding.collision_class)];
     if (finding.collision_class > CollisionClass::clearance) {
-        row["depth"] = finding.depth;
+        add_depth(row, finding);
     } else {
         row["distance"] = finding.distance;
+    }
+    if (finding.collision_class == CollisionClass::clearance && finding.nearest[0] != finding.nearest[1]) {
+        row["nearest"] = {json_of(finding.nearest[0]), json_of(finding.nearest[1])};
     }
     if (finding.contacts.empty()) return;
     Json contacts = Json::array();
@@ -31,6 +53,31 @@ void add_finding(Json& row, const Finding& finding) {
         contacts.push_back(contact_json(finding.contacts[i]));
     }
     row["contacts"] = std::move(contacts);
+    if (finding.more_contacts || finding.contacts.size() > most) row["more_contacts"] = true;
+}
+
+/// Returns the length of the shortest translation along an axis that separates two boxes, or minus their largest gap.
+double overlap_of(const Box3d& a, const Box3d& b) {
+    double overlap = std::numeric_limits<double>::infinity();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        overlap = std::min({overlap, a.max[axis] - b.min[axis], b.max[axis] - a.min[axis]});
+    }
+    return overlap;
+}
+
+/// Pairs without exact tests beyond this number stay in the order of their indices: it takes 0.1 s to compare the boxes of a million pairs.
+constexpr std::size_t max_compared_overlaps = 4'000'000;
+
+/// The place of a row in the order from the worst to the least one.
+struct Rank {
+    std::uint8_t severity;
+    double depth;
+    std::uint32_t row;
+};
+
+bool is_worse(const Rank& p, const Rank& q) {
+    if (p.severity != q.severity) return p.severity > q.severity;
+    return p.depth != q.depth ? p.depth > q.depth : p.row < q.row;
 }
 
 class Table {
@@ -39,12 +86,13 @@ public:
 
     Answer rows(const RowRequest& request) {
         std::vector<std::uint32_t> kept = select(request);
-        sort(kept, request.sort);
-        const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, kept.size()));
-        const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, kept.size() - from));
+        const std::size_t total = kept.size();
+        const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, total));
+        const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, total - from));
+        sort(kept, request.sort, from + count);
         Json list = Json::array();
         for (std::size_t i = from; i < from + count; ++i) list.push_back(row(kept[i]));
-        return json_answer({{"total", kept.size()}, {"rows", list}});
+        return json_answer({{"total", total}, {"rows", list}});
     }
 
 private:
@@ -54,20 +102,67 @@ private:
         for (std::uint32_t i = 0; i < frame_.data.pairs.size(); ++i) {
             const auto [a, b] = frame_.data.pairs[i];
             if (request.object && a != *request.object && b != *request.object) continue;
+            if (request.with && a != *request.with && b != *request.with) continue;
             if (!text.empty() && !matches(frame_.contents, a, text) && !matches(frame_.contents, b, text)) continue;
             kept.push_back(i);
         }
         return kept;
     }
 
-    void sort(std::vector<std::uint32_t>& rows, RowRequest::Sort order) const {
+    /// Sorts the first `count` rows; the others are left in any order.
+    void sort(std::vector<std::uint32_t>& rows, RowRequest::Sort order, std::size_t count) const {
         const auto& findings = frame_.data.findings;
-        if (order == RowRequest::Sort::depth && !findings.empty()) {
+        if (order == RowRequest::Sort::worst) {
+            keep_worst(rows, count);
+        } else if (order == RowRequest::Sort::depth && !findings.empty()) {
             std::stable_sort(rows.begin(), rows.end(),
                              [&](auto a, auto b) { return findings[a].depth > findings[b].depth; });
         } else if (order == RowRequest::Sort::began) {
             std::stable_partition(rows.begin(), rows.end(), [&](auto i) { return has_begun(frame_.data.pairs[i]); });
         }
+    }
+
+    /// Keeps the worst `count` rows, the worst first. Complexity: O(n log count), since a frame may have millions of pairs.
+    void keep_worst(std::vector<std::uint32_t>& rows, std::size_t count) const {
+        std::vector<Rank> worst;  // a heap; the least of them is in front
+        for (const std::uint32_t i : rows) {
+            const Rank rank = rank_of(i);
+            if (worst.size() < count) {
+                worst.push_back(rank);
+                std::push_heap(worst.begin(), worst.end(), is_worse);
+            } else if (!worst.empty() && is_worse(rank, worst.front())) {
+                std::pop_heap(worst.begin(), worst.end(), is_worse);
+                worst.back() = rank;
+                std::push_heap(worst.begin(), worst.end(), is_worse);
+            }
+        }
+        std::sort_heap(worst.begin(), worst.end(), is_worse);
+        rows.resize(worst.size());
+        std::transform(worst.begin(), worst.end(), rows.begin(), [](const Rank& rank) { return rank.row; });
+    }
+
+    Rank rank_of(std::uint32_t i) const {
+        if (frame_.data.findings.empty()) {
+            const bool compared = frame_.data.pairs.size() <= max_compared_overlaps;
+            return {severities[0], compared ? overlap(i).value_or(0) : 0, i};
+        }
+        const Finding& finding = frame_.data.findings[i];
+        const std::uint8_t severity = severities[std::size_t(finding.collision_class)];
+        if (finding.collision_class == CollisionClass::clearance) return {severity, -finding.distance, i};
+        return {severity, has_depth(finding) ? finding.depth : overlap(i).value_or(0), i};
+    }
+
+    /// Returns by how much the boxes of a pair overlap, if no exact test has computed a depth and the boxes are those of the objects.
+    std::optional<double> overlap(std::uint32_t i) const {
+        const FrameData& data = frame_.data;
+        const auto [a, b] = data.pairs[i];
+        if (!frame_.contents.has_boxes || !data.has(a) || !data.has(b)) return std::nullopt;
+        if (!data.findings.empty()) {
+            const CollisionClass found = data.findings[i].collision_class;
+            if (found != CollisionClass::unknown && found != CollisionClass::collision) return std::nullopt;
+            if (has_depth(data.findings[i])) return std::nullopt;
+        }
+        return overlap_of(box_of(data, a), box_of(data, b));
     }
 
     bool has_begun(Pair pair) const { return std::binary_search(frame_.began.begin(), frame_.began.end(), pair); }
@@ -81,6 +176,11 @@ private:
         }
         if (has_begun(pair)) row["change"] = "began";
         if (!frame_.data.findings.empty()) add_finding(row, frame_.data.findings[i]);
+        if (const auto overlapping = overlap(i)) row["overlap"] = *overlapping;
+        const auto is_hidden = [&](std::uint32_t object) { return frame_.shown.row_of(object) == ShownObjects::none; };
+        if ((is_hidden(pair.a) || is_hidden(pair.b)) && frame_.data.has(pair.a) && frame_.data.has(pair.b)) {
+            row["boxes"] = {json_of(box_of(frame_.data, pair.a)), json_of(box_of(frame_.data, pair.b))};
+        }
         return row;
     }
 
@@ -101,19 +201,41 @@ RowRequest row_request(const Address& address) {
     RowRequest request;
     request.from = count_of(address, "from", 0);
     request.count = std::min<std::uint64_t>(count_of(address, "count", request.count), max_rows);
-    if (!address.parameter("object").empty()) {
-        request.object = std::uint32_t(std::min<std::uint64_t>(count_of(address, "object", 0), 0xFFFFFFFF));
-    }
+    const auto object_of = [&](const std::string& name) -> std::optional<std::uint32_t> {
+        if (address.parameter(name).empty()) return std::nullopt;
+        return std::uint32_t(std::min<std::uint64_t>(count_of(address, name, 0), 0xFFFFFFFF));
+    };
+    request.object = object_of("object");
+    request.with = object_of("with");
     request.text = address.parameter("q");
     const std::string_view sort = address.parameter("sort");
-    if (sort == "depth") {
+    if (sort == "worst") {
+        request.sort = RowRequest::Sort::worst;
+    } else if (sort == "depth") {
         request.sort = RowRequest::Sort::depth;
     } else if (sort == "began") {
         request.sort = RowRequest::Sort::began;
     } else if (!sort.empty() && sort != "pair") {
-        throw Error(ErrorCode::bad_input, "sort: pair, depth or began");
+        throw Error(ErrorCode::bad_input, "sort: worst, pair, depth or began");
     }
     return request;
+}
+
+Answer class_rows(const ShownFrame& frame) {
+    constexpr std::uint8_t none = 0xFF;
+    std::vector<std::uint8_t> classes(std::size_t(frame.objects), none);
+    for (std::size_t i = 0; i < frame.data.pairs.size(); ++i) {
+        const auto& findings = frame.data.findings;
+        const std::uint8_t found = findings.empty() ? 0 : std::uint8_t(findings[i].collision_class);
+        for (const std::uint32_t object : {frame.data.pairs[i].a, frame.data.pairs[i].b}) {
+            std::uint8_t& worst = classes[object];
+            if (worst == none || severities[found] > severities[worst]) worst = found;
+        }
+    }
+    std::vector<std::uint8_t> rows;
+    rows.reserve(frame.shown.size());
+    for (const std::uint32_t object : frame.shown.objects()) rows.push_back(classes[object]);
+    return binary_answer(std::span<const std::uint8_t>(rows));
 }
 
 Answer collision_rows(const ShownFrame& frame, const RowRequest& request) { return Table(frame).rows(request); }

@@ -71,12 +71,19 @@ Answer search_answer(const ShownFrame& frame, std::string_view text);
 /// Selects rows of the table of collisions.
 struct RowRequest {
     std::uint64_t from = 0, count = 100;
-    enum class Sort : std::uint8_t { pair, depth, began } sort = Sort::pair;
-    std::optional<std::uint32_t> object;
+    enum class Sort : std::uint8_t {
+        pair,
+        worst,  ///< by class, penetrating first, and in a class deepest first; boxes without depths by their overlap
+        depth,
+        began
+    } sort = Sort::pair;
+    std::optional<std::uint32_t> object, with;  ///< only pairs with this object, or with both
     std::string text;
 };
 /// Returns the selection that the parameters give. Throws: Error{bad_input} for an invalid parameter.
 RowRequest row_request(const Address& address);
+/// Returns the class of the worst pair of each row's object; 255 for objects without pairs.
+Answer class_rows(const ShownFrame& frame);
 /// Returns the selected rows, and the number of all rows that match.
 Answer collision_rows(const ShownFrame& frame, const RowRequest& request);
 

@@ -37,9 +37,10 @@ void add_facts(Json& json, const std::vector<Fact>& facts, bool with_seconds) {
     }
 }
 
-/// Selects all rows that an exported page has.
+/// Selects all rows that an exported page has: the worst ones.
 RowRequest all_rows() {
     RowRequest request;
+    request.sort = RowRequest::Sort::worst;
     request.count = max_rows;
     return request;
 }
@@ -71,6 +72,7 @@ void FrameSource::load(const ProgressSink& progress) {
     first_pairs_ = {first->data.pair_count, first->data.more_pairs};
     first_facts_ = first->data.facts;
     contents_.contacts |= has_contacts(first->data.findings);
+    has_classes_ = contents_.contacts || !first->data.findings.empty();
     if (shown_.size() < contents_.objects) {
         contents_.notices.push_back(grouped_number(contents_.objects - shown_.size()) + " of " +
                                     grouped_number(contents_.objects) + " boxes are drawn only where you zoom in.");
@@ -224,6 +226,7 @@ std::optional<Answer> FrameSource::answer_about(Frame& frame, std::string_view w
     if (what == "frame.f32") return box_rows(shown);
     if (what == "poses.f32" && !contents_.shapes.empty()) return pose_rows();
     if (what == "partners.u32") return partner_counts(shown);
+    if (what == "classes.u8" && has_classes_) return class_rows(shown);
     if (what == "levels.u8") return level_column(frame);
     if (what == "pairs.u32") return pair_rows(frame.data.pairs);
     if (what == "began.u32" && contents_.moving) return pair_rows(frame.began);
@@ -249,6 +252,7 @@ Answer FrameSource::view_answer() const {
                 {"groups", !contents_.groups.empty()},
                 {"shapes", !contents_.shapes.empty()},
                 {"contacts", contents_.contacts},
+                {"classes", has_classes_},
                 {"events", contents_.moving},
                 {"search", !export_},
                 {"near", !export_ && shown_.size() < contents_.objects}};
@@ -385,6 +389,7 @@ std::vector<std::string> FrameSource::addresses_of(std::uint64_t number) {
         all.push_back(what);
     }
     if (contents_.moving) all.insert(all.end(), {"began/#.u32", "ended/#.u32"});
+    if (has_classes_) all.push_back("classes/#.u8");
     const std::lock_guard lock(frames_mutex_);
     unsigned deepest = 0;
     for (const OctantSummary& octant : octants(*frame(number)).all()) deepest = std::max(deepest, octant.code.level());

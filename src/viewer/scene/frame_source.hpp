@@ -97,7 +97,8 @@ private:
     ShownObjects shown_;
     Point3d origin_ = {};
     Box3d bounds_ = {};
-    bool has_bounds_ = false;  // true after a frame with objects was found
+    bool has_classes_ = false;  // true if exact tests found classes
+    bool has_bounds_ = false;   // true after a frame with objects was found
     PairTotal first_pairs_;
     std::vector<Fact> first_facts_;
     std::optional<Export> export_;
