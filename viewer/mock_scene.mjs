@@ -131,7 +131,8 @@ class StaticScene {
   }
 
   changes(f) {
-    if (f === 0) return {began: [], ended: []};
+    // In the first frame, all pairs are new.
+    if (f === 0) return {began: this.frame(0).pairs, ended: []};
     const keys = pairs => new Set(pairs.map(String));
     const [now, before] = [this.frame(f).pairs, this.frame(f - 1).pairs];
     const [nowKeys, beforeKeys] = [keys(now), keys(before)];

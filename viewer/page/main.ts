@@ -298,6 +298,7 @@ function offerHooks(app: App): void {
     camera: () => app.stage.camera.toText(),
     settings: () => ({...settings.values}),
     frame: () => ({...app.model.frame.info}),
+    plot: () => app.timeline?.ranges(),
   }});
 }
 

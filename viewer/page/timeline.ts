@@ -23,7 +23,8 @@ export class Timeline {
   // Frames that can be shown: all, until the program says how many it has computed.
   done = 0;
   private plot: uPlot | null = null;
-  private data: [number[], number[], number[], number[]] = [[], [], [], []];
+  // Frames, pairs, began, ended. In the first frame all pairs are new, so it has no events to compare with those of others.
+  private data: [number[], number[], (number | null)[], (number | null)[]] = [[], [], [], []];
   private runs = 0;
   private readonly slider = byId<HTMLInputElement>('frame-slider');
   private readonly play = byId<HTMLButtonElement>('play');
@@ -45,7 +46,8 @@ export class Timeline {
   setNumbers(numbers: Numbers): void {
     this.done = numbers.done;
     const column = (values: number[] = []): number[] => values.slice(0, numbers.done);
-    this.data = [Array.from({length: numbers.done}, (_, k) => k), column(numbers.pairs), column(numbers.began), column(numbers.ended)];
+    const events = (values: number[] = []): (number | null)[] => column(values).map((value, k) => k === 0 ? null : value);
+    this.data = [Array.from({length: numbers.done}, (_, k) => k), column(numbers.pairs), events(numbers.began), events(numbers.ended)];
     this.slider.max = String(Math.max(0, numbers.done - 1));
     this.draw();
     this.show(this.frame);
@@ -53,11 +55,18 @@ export class Timeline {
 
   // Adds the numbers of a live frame.
   append(frame: number, pairs: number, began: number, ended: number, stepSeconds: number): void {
-    [frame, pairs, began, ended].forEach((value, k) => this.data[k]!.push(value));
+    const first = this.data[0].length === 0;
+    [frame, pairs, first ? null : began, first ? null : ended].forEach((value, k) => (this.data[k] as (number | null)[]).push(value));
     if (this.data[0].length > livePoints) this.data = this.data.map(column => column.filter((_, k) => k % 2 === 0)) as typeof this.data;
     this.frame = frame;
     byId('frame-text').textContent = `frame ${count(frame)}, step ${seconds(stepSeconds)}`;
     this.draw();
+  }
+
+  // The ranges of the plot, for tests.
+  ranges(): Record<string, [number, number]> {
+    const of = (name: string): [number, number] => [this.plot?.scales[name]?.min ?? NaN, this.plot?.scales[name]?.max ?? NaN];
+    return {pairs: of('pairs'), events: of('events')};
   }
 
   setTheme(): void {
@@ -150,11 +159,18 @@ export class Timeline {
     const style = getComputedStyle(document.documentElement);
     const of = (name: string): string => style.getPropertyValue(name).trim();
     const axis = {stroke: of('--muted'), grid: {stroke: of('--line'), width: 1}, ticks: {show: false}, font: '11px system-ui, sans-serif'};
-    const series = (label: string, name: string): uPlot.Series => ({label, stroke: of(name), width: 1.5, points: {show: false}});
+    const texts = (_: uPlot, ticks: number[]): string[] => ticks.map(tick => Number.isInteger(tick) ? shortTick(tick) : '');
+    const numbers = {...axis, size: 52, space: 22, values: texts};
+    const series = (label: string, name: string, scale: string): uPlot.Series =>
+      ({label, scale, stroke: of(name), width: 1.5, points: {show: false}});
     const plot = new uPlot({
-      width, height, legend: {show: false}, scales: {x: {time: false}, y: {range: (_, low, high) => [Math.min(0, low), Math.max(1, high)]}},
-      axes: [{...axis, size: 22, space: 60, incrs: frameSteps}, {...axis, size: 52, space: 22, values: (_, ticks) => ticks.map(tick => shortTick(tick))}],
-      series: [{label: 'frame'}, series('pairs', '--pairs'), series('began', '--began'), series('ended', '--ended')],
+      width, height, legend: {show: false},
+      // Few of many pairs begin or end in a frame, so events have a scale of their own.
+      scales: {x: {time: false}, pairs: {range: (_, low, high) => pairRange(low, high)},
+        events: {range: (_, __, high) => [0, Math.max(1, 1.1 * (high ?? 0))]}},
+      axes: [{...axis, size: 22, space: 60, incrs: frameSteps}, {...numbers, scale: 'pairs', stroke: of('--pairs')},
+        {...numbers, scale: 'events', side: 1, grid: {show: false}, stroke: of('--began')}],
+      series: [{label: 'frame'}, series('pairs', '--pairs', 'pairs'), series('began', '--began', 'events'), series('ended', '--ended', 'events')],
       cursor: {points: {show: false}, drag: {x: false, y: false}, y: false},
       hooks: {draw: [u => this.drawMark(u, of('--accent'))]},
     }, this.data, host);
@@ -174,6 +190,15 @@ export class Timeline {
     ctx.fillRect(x - 1, bbox.top, 2, bbox.height);
     ctx.restore();
   }
+}
+
+// From the least to the largest number of pairs. A change of less than a tenth is not made larger than it is.
+function pairRange(low: number | null, high: number | null): [number, number] {
+  const [least, most] = [low ?? 0, high ?? 1];
+  const spread = Math.max(most - least, 0.1 * most, 1);
+  const middle = 0.5 * (least + most);
+  const bottom = Math.max(0, middle - 0.6 * spread);
+  return [bottom, bottom + 1.2 * spread];
 }
 
 function shortTick(value: number): string {

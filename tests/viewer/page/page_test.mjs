@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
-import {checkAccessibility, checkKeys, colourAt, light, text} from '../browser/checks.mjs';
+import {checkAccessibility, checkKeys, colourAt, complete, light, text} from '../browser/checks.mjs';
 import {accessibility, clickAt, data, launch, open, pixel, project, ready, runTests, settings, viewerFolder, waitForData} from './browser.mjs';
 import {exportPage} from './export.mjs';
 
@@ -289,7 +289,7 @@ test('a section cuts boxes', 'static', 1, async ({page, scene, address, browser}
 });
 
 test('began and ended have their colours', 'moving', 40, async ({page, scene, address, browser}) => {
-  const frame = [...Array(40).keys()].find(f => scene.changes(f).began.length > 0);
+  const frame = [...Array(40).keys()].find(f => f > 0 && scene.changes(f).began.length > 0);
   const [a, b] = scene.changes(frame).began[0];
   const other = await open(browser, `${address}#frame=${frame}&show=colliding&lines=all`);
   await ready(other.page);
@@ -461,6 +461,17 @@ test('the error of an input', 'failed', 10, async ({page}) => {
 test('progress while loading', 'loading', 10, async ({page}) => {
   await ready(page);
   assert.equal(await data(page, 'drawn'), '10');
+});
+
+test('the first frame does not flatten the plot', 'moving', 2000, async ({page, scene}) => {
+  await complete(page);
+  const {pairs: totals, began, ended} = scene.timeline();
+  const {pairs, events} = await page.evaluate(() => window.octopairView.plot());
+  const most = Math.max(...began.slice(1), ...ended.slice(1));
+  assert.ok(began[0] > 1.5 * most);
+  assert.ok(events[0] === 0 && events[1] >= most && events[1] < 1.2 * most, `${events} for ${most}`);
+  const [low, high] = [Math.min(...totals), Math.max(...totals)];
+  assert.ok(pairs[0] <= low && pairs[1] >= high && pairs[1] - pairs[0] < 1.3 * Math.max(high - low, 0.1 * high), `${pairs} for ${low} to ${high}`);
 });
 
 for (const colorScheme of ['light', 'dark']) {
