@@ -61,6 +61,10 @@ export function findPairs(boxes) {
   return pairs.sort((p, q) => p[0] - q[0] || p[1] - q[1]);
 }
 
+const classes = ['unknown', 'clearance', 'collision', 'touching', 'penetrating', 'contained', 'duplicate'];
+const severities = [2, 0, 3, 1, 6, 5, 4];
+const severity = row => severities[classes.indexOf(row.class ?? 'unknown')];
+
 const flat = pairs => Buffer.from(Uint32Array.from(pairs.flat()).buffer);
 const bytesOf = array => Buffer.from(array.buffer, array.byteOffset, array.byteLength);
 
@@ -87,6 +91,8 @@ class StaticScene {
   constructor(kind, n) {
     this.kind = kind;
     this.list = generate(n);
+    // The first object of `hall` is as large as the scene, so it collides with all others.
+    if (kind === 'hall') this.list[0] = {...this.list[0], at: [side / 2, side / 2, side / 2], half: [side / 2, side / 2, side / 2]};
     this.n = n;
     this.frames = kind === 'moving' ? 40 : 1;
     this.shapes = kind === 'shapes' ? makeShapes() : null;
@@ -144,7 +150,7 @@ class StaticScene {
     return {
       version: '0.2.0', title: `mock ${this.kind}`, kind: 'scene', objects: this.n, shown: this.rows, frames: this.frames, origin: [1000, 2000, 3000],
       bounds: {min: [1000 - edge, 2000 - edge, 3000 - edge], max: [1000 + side + edge, 2000 + side + edge, 3000 + side + edge]}, up: 'z', unit: 'm', margin: 0,
-      has: {names: this.names !== null, groups: true, shapes: this.shapes !== null, contacts: this.n <= 20000, events: this.kind === 'moving', search: true,
+      has: {names: this.names !== null, groups: true, shapes: this.shapes !== null, contacts: this.n <= 20000, classes: this.n <= 20000, events: this.kind === 'moving', search: true,
         near: this.shown !== null, rows: this.shown !== null},
       notices: this.shown ? [`${(this.n - this.rows).toLocaleString('en-US')} of ${this.n.toLocaleString('en-US')} boxes are not drawn until you zoom in.`] : [],
       summary: {pairs: this.frame(0).pairs.length, format: 'npy', seconds: {read: 0.1, detect: 0.02}},
@@ -181,10 +187,12 @@ class StaticScene {
     const began = new Set(this.changes(f).began.map(String));
     const object = query.get('object');
     const text = (query.get('q') ?? '').toLowerCase();
-    const rows = pairs.filter(([a, b]) => object === null || a === Number(object) || b === Number(object))
+    const has = (pair, name) => query.get(name) === null || pair.includes(Number(query.get(name)));
+    const rows = pairs.filter(pair => has(pair, 'object') && has(pair, 'with'))
       .map(([a, b]) => this.collision(boxes, a, b, began))
       .filter(row => !text || [String(row.a), String(row.b)].includes(text) || row.name_a.includes(text) || row.name_b.includes(text));
-    if (query.get('sort') === 'depth') rows.sort((p, q) => q.depth - p.depth);
+    const measure = row => row.depth ?? row.overlap;
+    if (query.get('sort') === 'worst') rows.sort((p, q) => severity(q) - severity(p) || measure(q) - measure(p));
     if (query.get('sort') === 'began') rows.sort((p, q) => Number(q.change === 'began') - Number(p.change === 'began'));
     const from = Number(query.get('from') ?? 0);
     return {total: rows.length, rows: rows.slice(from, from + Number(query.get('count') ?? 1e9))};
@@ -195,11 +203,32 @@ class StaticScene {
     const high = [0, 1, 2].map(k => Math.min(boxes[6 * a + k + 3], boxes[6 * b + k + 3]));
     const depths = low.map((value, k) => high[k] - value);
     const axis = depths.indexOf(Math.min(...depths));
-    const row = {a, b, name_a: this.names?.[a] ?? '', name_b: this.names?.[b] ?? '', class: 'penetrating'};
+    const row = {a, b, name_a: this.names?.[a] ?? '', name_b: this.names?.[b] ?? ''};
     if (began.has(String([a, b]))) row.change = 'began';
-    if (this.n > 20000) return row;
+    const boxOf = k => ({min: [0, 1, 2].map(axis => boxes[6 * k + axis] + 1000 * (axis + 1)), max: [0, 1, 2].map(axis => boxes[6 * k + axis + 3] + 1000 * (axis + 1))});
+    if (this.shown && (a % 4 || b % 4)) row.boxes = [boxOf(a), boxOf(b)];
+    if (this.n > 20000) return {...row, overlap: depths[axis]};
+    row.class = this.classOf(a, b);
+    // Depths of shapes that are not convex are lower bounds.
+    Object.assign(row, a % 2 ? {depth_kind: 'least'} : {depth_kind: 'at_least', depth_at_most: 2 * depths[axis]});
     const point = low.map((value, k) => 1000 * (k + 1) + 0.5 * (value + high[k]));
-    return {...row, depth: depths[axis], distance: 0, contacts: [{point, normal: [0, 1, 2].map(k => Number(k === axis)), depth: depths[axis]}]};
+    const normal = [0, 1, 2].map(k => Number(k === axis));
+    // The depth of the contact is not that of the pair.
+    return {...row, depth: depths[axis], contacts: [{point, normal, depth: 0.5 * depths[axis]}]};
+  }
+
+  // Every fifth pair only touches.
+  classOf(a, b) {
+    return (a + b) % 5 === 0 ? 'touching' : 'penetrating';
+  }
+
+  worstClasses(f) {
+    const worst = new Uint8Array(this.n).fill(255);
+    for (const [a, b] of this.frame(f).pairs) {
+      const code = classes.indexOf(this.classOf(a, b));
+      for (const k of [a, b]) if (worst[k] === 255 || severities[code] > severities[worst[k]]) worst[k] = code;
+    }
+    return worst;
   }
 
   object(f, k) {
@@ -296,6 +325,7 @@ class StaticScene {
         began: this.changes(f).began.length, ended: this.changes(f).ended.length, seconds: {detect: 0.001}};
       case 'poses': return this.poses(f);
       case 'partners': return bytesOf(this.ofRows(this.partnerCounts(f), 1));
+      case 'classes': return this.n <= 20000 ? bytesOf(Uint8Array.from(this.ofRows(this.worstClasses(f), 1))) : null;
       case 'levels': return bytesOf(Uint8Array.from({length: this.rows}, (_, row) => this.level(this.objectAt(row))));
       case 'pairs': return flat(pairs);
       case 'began': return flat(this.changes(f).began);
@@ -345,7 +375,7 @@ class LiveScene extends StaticScene {
   }
 
   view() {
-    return {...super.view(), kind: 'live', has: {...super.view().has, names: false, groups: false, events: true, contacts: false}};
+    return {...super.view(), kind: 'live', has: {...super.view().has, names: false, groups: false, events: true, contacts: false, classes: false}};
   }
 
   receive(message, send) {

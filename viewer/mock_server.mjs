@@ -1,5 +1,5 @@
 // Serves generated scenes by the protocol of the viewer (protocol.md), for work on the page without the program.
-// node mock_server.mjs [--scene static|moving|shapes|live|server|failed|near|loading] [--objects N] [--page FILE] [--port N]
+// node mock_server.mjs [--scene static|moving|shapes|hall|live|server|failed|near|loading] [--objects N] [--page FILE] [--port N]
 import {createHash} from 'node:crypto';
 import {existsSync, readFileSync} from 'node:fs';
 import {createServer} from 'node:http';

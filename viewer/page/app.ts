@@ -1,12 +1,16 @@
 // Connects the parts of the page: a change of the frame, the selection or a setting reaches all that show it.
 import * as THREE from 'three';
-import {legend, paint, type Palette, paletteOf} from './colours.ts';
-import {isAbort, messageOf} from './dom.ts';
+import {legend, type Look, opacityOf, paint, type Palette, paletteOf} from './colours.ts';
+import {isAbort, messageOf, tail} from './dom.ts';
+import {contactColour} from './contact_layer.ts';
+import {glassOpacity, passOf} from './draw_pass.ts';
+import {bestView, type Focus, focusOf, sectionOf} from './focus.ts';
 import {hideLabel, octantText, placeDepths, showLabel} from './hover.ts';
 import {isDark} from './layout.ts';
 import {Link} from './link.ts';
 import {Near} from './near.ts';
 import {Options} from './options.ts';
+import {Overview, type Place} from './overview.ts';
 import {pairLimit} from './pair_layer.ts';
 import {say, showLegend, showNotices, showSummary, showTitle} from './panel.ts';
 import {Picker} from './picker.ts';
@@ -20,7 +24,7 @@ import type {Stage} from './stage.ts';
 import {computeStates, State} from './states.ts';
 import {Table} from './table.ts';
 import type {Timeline} from './timeline.ts';
-import type {Collision, Point} from './types.ts';
+import type {Collision, Collisions, Point} from './types.ts';
 
 export class App {
   readonly selection: Selection;
@@ -29,6 +33,7 @@ export class App {
   options: Options | null = null;
   readonly link: Link;
   readonly near: Near;
+  readonly overview: Overview;
   timeline: Timeline | null = null;
   private readonly picker: Picker;
   private states: Uint8Array = new Uint8Array(0);
@@ -37,19 +42,32 @@ export class App {
   private octantRequest = new AbortController();
   private contactRequest = new AbortController();
   private contactsNow = '';
+  private contactRows: readonly Collision[] | null = null;
+  private look: Look = {ghosts: false, glass: -1};
+  // The camera was placed to see the selection.
+  private framed = false;
+  // Where the selected pair is, and the angles from which it is seen best, once they are needed.
+  private focus: Focus | null = null;
+  private view: {focus: Focus; yaw: number; pitch: number} | null = null;
+  // The page shall select the worst collision as soon as there is one.
+  private waitsForWorst = false;
   private readonly notes: string[] = [];
   private low: Point;
   private high: Point;
 
   constructor(readonly source: Source, readonly model: SceneModel, readonly settings: Settings, readonly stage: Stage, camera: string | null) {
     const failed = (error: unknown): void => this.fail(error);
-    this.selection = new Selection(source, model, {changed: () => this.selectionChanged(), zoom: () => this.zoomToSelection()});
+    this.selection = new Selection(source, model, {
+      changed: () => this.selectionChanged(), clear: () => void this.clearSelection(), zoom: () => this.zoomToSelection(),
+      onlySelection: () => this.toggleOnlySelection(), section: () => this.toggleSection(), place: () => this.place(),
+    });
     this.table = new Table(source, {
       frame: () => model.frame.info.frame, selected: () => this.selection.objects, open: row => void this.openCollision(row), failed,
-    }, {contacts: model.view.has.contacts, events: model.view.has.events || model.view.kind === 'live'});
+    }, model.view.has.events || model.view.kind === 'live');
     this.search = new Search(source, model, object => void this.openObject(object), failed);
     this.near = new Near(source, model, this.stage, () => this.recolour(), failed);
     this.picker = new Picker(this);
+    this.overview = new Overview(this.stage, () => this.placeInScene(), () => this.zoomAll());
     this.low = model.toRelative(model.view.bounds.min);
     this.high = model.toRelative(model.view.bounds.max);
     this.stage.hollow = !model.view.has.boxes;
@@ -67,12 +85,13 @@ export class App {
     return paletteOf(isDark(this.settings));
   }
 
-  visible(row: number): boolean {
-    return this.colours[4 * row + 3] !== 0;
+  // The pass in which a row is drawn, or -1 if it is hidden.
+  passOf(row: number): number {
+    return passOf(this.colours[4 * row + 3]!);
   }
 
-  nearVisible(row: number): boolean {
-    return this.nearColours[4 * row + 3] !== 0;
+  nearPassOf(row: number): number {
+    return passOf(this.nearColours[4 * row + 3]!);
   }
 
   fail(error: unknown): void {
@@ -83,6 +102,22 @@ export class App {
   async showFrame(frame: number, reading: Promise<Frame> = this.model.readFrame(this.source, frame)): Promise<void> {
     this.model.frame = await reading;
     this.frameChanged(false);
+    this.frameShown(frame);
+  }
+
+  // Shows the first frame, with its worst collision selected. `rows` are those of the table, the worst first.
+  async showWorst(reading: Promise<Frame>, rows: Promise<Collisions>): Promise<void> {
+    this.model.frame = await reading;
+    const answer = await rows.catch((error: unknown) => this.fail(error));
+    const worst = answer ? this.table.use(answer, 0) : null;
+    if (worst) this.selection.begin(worst);
+    this.frameChanged(false);
+    if (worst) this.markSelection();
+    if (this.focus) this.zoomToContact(this.focus);
+    this.frameShown(this.model.frame.info.frame);
+  }
+
+  private frameShown(frame: number): void {
     this.timeline?.show(frame);
     if (this.options) this.followFrame().catch((error: unknown) => this.fail(error));
   }
@@ -92,15 +127,28 @@ export class App {
     this.options = new Options(this.settings, this.model);
   }
 
-  // Reads what the picture of a frame did not need: the table, octants, pairs and the selected object.
-  async followFrame(): Promise<void> {
+  // A running scene may have no collision yet.
+  selectWorstSoon(): void {
+    this.waitsForWorst = true;
+    this.selectWorst();
+  }
+
+  selectWorst(): void {
+    const worst = this.table.rows[0];
+    if (!this.waitsForWorst || !worst) return;
+    void this.selection.select([worst.a, worst.b], worst);
+  }
+
+  // Reads what the picture of a frame did not need: the table and the selection, unless they were read with it, octants and pairs.
+  async followFrame(withTable = true): Promise<void> {
     const {model, source, settings} = this;
     const {frame} = model;
     const live = model.view.kind === 'live';
     const levels = settings.values.colour === 'level' || source.exported;
-    await Promise.all([this.table.load(0), this.showOctants(), live ? null : model.readPairs(source, frame), levels ? model.readLevels(source) : null]);
+    await Promise.all([withTable ? this.table.load(0) : null, this.showOctants(), live ? null : model.readPairs(source, frame),
+      levels ? model.readLevels(source) : null]);
     if (frame !== model.frame && !live) return;
-    await this.selection.refresh();
+    if (withTable) await this.selection.refresh();
     if (levels || settings.values.lines === 'all') this.recolour();
   }
 
@@ -125,7 +173,8 @@ export class App {
     stage.shapes.setPoses(model.frame.poses);
     if (this.growBounds() && !location.hash.includes('at=')) this.zoomAll();
     this.near.forget();
-    if (this.selection.objects.length) this.selection.partners = model.partnersOf(this.selection.objects[0]!);
+    if (this.selection.objects.length === 1) this.selection.partners = model.partnersOf(this.selection.objects[0]!);
+    this.updateFocus();
     this.recolour();
     showTitle(model);
     showSummary(model);
@@ -138,45 +187,139 @@ export class App {
     const {model, stage, settings} = this;
     const {objects, partners} = this.selection;
     const palette = this.palette();
-    this.states = computeStates(model, objects, [...partners, ...objects]);
+    const look = this.look = this.lookOf();
+    this.states = computeStates(model, this.selection);
     if (this.colours.length !== 4 * model.rows) this.colours = new Uint8Array(4 * model.rows);
-    paint(model, this.states, settings.values, palette, this.colours);
+    paint(model, this.states, {values: settings.values, palette, look}, this.colours);
+    stage.ghosts = look.ghosts;
+    stage.glass = look.glass >= 0;
     stage.boxes.setColours(this.boxColours());
     stage.shapes.setColours(this.colours);
     this.colourNear(palette);
     this.outline(palette);
     stage.pairs.show(model, settings.values.lines, objects, partners, palette);
+    this.restyle();
     this.showLegend();
     void this.showContacts();
     this.showNotices();
-    stage.apply(settings.values, this.low, this.high);
+    this.overview.changed();
+  }
+
+  // While something is selected, the rest are ghosts. In a pair, an object that encloses the other one is glass, if no section opens it.
+  private lookOf(): Look {
+    const {objects} = this.selection;
+    const {ghosts, section} = this.settings.values;
+    const glass = this.focus && this.focus.glass >= 0 && section === 'none' ? objects[this.focus.glass]! : -1;
+    return {ghosts: objects.length > 0 && ghosts, glass};
+  }
+
+  private updateFocus(): void {
+    const {objects, collision, isPair} = this.selection;
+    const [first, second] = isPair ? objects.map(object => this.picker.part(object)) : [];
+    const known = first && second && !first.box.isEmpty() && !second.box.isEmpty();
+    this.focus = known ? focusOf(collision, [first, second], point => this.model.toRelative(point), this.stage.camera.radius()) : null;
+  }
+
+  private place(): Point | null {
+    this.updateFocus();
+    return this.focus && this.model.toAbsolute(this.focus.mark.toArray());
+  }
+
+  // What the small picture of the scene shows. There is none if the large one shows the whole scene, or if the others are hidden.
+  private placeInScene(): Place | null {
+    const {focus} = this;
+    const seesAll = this.stage.camera.unmoved && !this.framed;
+    if (!focus || seesAll || this.settings.values.show === 'selection') return null;
+    return {focus, view: this.viewOf(focus), colour: contactColour(this.selection.collision, this.palette())};
+  }
+
+  private viewOf(focus: Focus): {yaw: number; pitch: number} {
+    if (this.view?.focus !== focus) this.view = {focus, ...bestView(focus, this.stage.camera)};
+    return this.view;
+  }
+
+  // Shapes have come: a contact may be seen better from another side.
+  shapesArrived(): void {
+    const framed = this.focus && this.stage.camera.unmoved && this.framed;
+    this.updateFocus();
+    this.recolour();
+    if (framed) this.zoomToSelection();
   }
 
   selectionChanged(): void {
-    document.documentElement.dataset.selected = this.selection.objects.join(',');
+    this.waitsForWorst = false;
+    this.updateFocus();
     this.recolour();
+    this.markSelection();
+  }
+
+  private markSelection(): void {
+    document.documentElement.dataset.selected = this.selection.objects.join(',');
     this.table.selectionChanged();
     this.link.changed();
   }
 
   // A setting changed that only concerns how layers are drawn.
   restyle(): void {
-    this.stage.apply(this.settings.values, this.low, this.high);
+    const {focus, stage} = this;
+    const wanted = focus && this.settings.values.section === 'contact';
+    const view = wanted ? this.viewOf(focus) : null;
+    stage.contactCut = view ? sectionOf(focus!, stage.camera.direction(view.yaw, view.pitch)) : null;
+    stage.apply(this.settings.values, this.low, this.high);
+    const cut = focus && stage.section();
+    const {states, contact} = this.palette();
+    if (cut) stage.caps.show(focus!.parts, cut, [states[State.selected]!, states[State.second]!, contact]);
+    else stage.caps.clear();
   }
 
   zoomAll(): void {
+    this.framed = false;
     this.stage.camera.fitScene();
     this.stage.moved();
   }
 
+  // Zooms to the contact of a pair, or to the selected object.
   zoomToSelection(): void {
+    if (this.focus) return this.zoomToContact(this.focus);
     const box = new THREE.Box3();
     for (const object of this.selection.objects) this.picker.addBox(box, object);
     if (box.isEmpty()) return;
     const size = box.getSize(new THREE.Vector3()).length();
     box.expandByScalar(Math.max(0.6 * size, 1e-4 * this.stage.camera.radius()));
     this.stage.camera.fit(box.min.toArray(), box.max.toArray());
+    this.framed = true;
     this.stage.moved();
+  }
+
+  private zoomToContact(focus: Focus): void {
+    const {camera} = this.stage;
+    const {yaw, pitch} = this.viewOf(focus);
+    camera.look(yaw, pitch);
+    const half = new THREE.Vector3().setScalar(0.65 * focus.reach);
+    camera.fit(focus.middle.clone().sub(half).toArray(), focus.middle.clone().add(half).toArray());
+    this.framed = true;
+    this.stage.moved();
+  }
+
+  // Shows the whole scene again, if the camera still shows the selection alone.
+  async clearSelection(): Promise<void> {
+    const back = this.framed && this.stage.camera.unmoved;
+    const cleared = this.selection.select([]);
+    if (back) this.zoomAll();
+    return cleared;
+  }
+
+  toggleOnlySelection(): void {
+    this.settings.set('show', this.settings.values.show === 'selection' ? 'all' : 'selection');
+  }
+
+  toggleSection(): void {
+    this.settings.set('section', this.settings.values.section === 'contact' ? 'none' : 'contact');
+  }
+
+  // Whether the selection has a contact for a section.
+  hasContact(): boolean {
+    return this.focus !== null;
   }
 
   async openObject(object: number): Promise<void> {
@@ -184,13 +327,13 @@ export class App {
   }
 
   async openCollision(row: Collision): Promise<void> {
-    return this.openAll([row.a, row.b]);
+    return this.openAll([row.a, row.b], row);
   }
 
-  // Selects objects and zooms to them. The places of objects that are not drawn must be read first.
-  private async openAll(objects: number[]): Promise<void> {
-    const reading = this.selection.select(objects).catch((error: unknown) => this.fail(error));
-    const known = objects.every(object => this.model.rowOf(object) >= 0);
+  // Selects objects and zooms to them. The places of objects that are not drawn, and the contacts of a pair, must be read first.
+  async openAll(objects: number[], row: Collision | null = null): Promise<void> {
+    const reading = this.selection.select(objects, row).catch((error: unknown) => this.fail(error));
+    const known = row !== null || (objects.length < 2 && objects.every(object => this.model.rowOf(object) >= 0));
     if (known) this.zoomToSelection();
     await reading;
     if (!known) this.zoomToSelection();
@@ -226,6 +369,7 @@ export class App {
     stage.onDraw(() => this.drawn());
     stage.onRest(() => {
       void this.near.update();
+      this.overview.changed();
       this.link.changed();
     });
     new Pointer(stage, {
@@ -239,7 +383,7 @@ export class App {
     if (name === 'octants' || name === 'level') return void this.showOctants();
     if (name === 'theme') return this.themeChanged();
     if (name === 'colour' && this.settings.values.colour === 'level') return void this.colourByLevel();
-    if (['colour', 'style', 'show', 'others', 'lines', 'contacts'].includes(name)) return this.recolour();
+    if (['colour', 'style', 'show', 'others', 'ghosts', 'lines', 'contacts', 'section'].includes(name)) return this.recolour();
     return this.restyle();
   }
 
@@ -298,50 +442,69 @@ export class App {
     const colours = this.nearColours = new Uint8Array(4 * near.objects.length);
     const {objects, partners} = this.selection;
     const others = new Set(partners);
-    const {show} = this.settings.values;
+    const {ghosts, glass} = this.look;
     near.objects.forEach((object, k) => {
-      const state = objects.includes(object) ? State.selected : others.has(object) ? State.partner :
+      const state = object === objects[0] ? State.selected : object === objects[1] ? State.second : others.has(object) ? State.partner :
         near.partners[k] ? State.colliding : State.free;
-      const hidden = state < State.partner && (show === 'selection' || (show === 'colliding' && state === State.free));
-      colours.set([...palette.states[state]!, hidden ? 0 : 255], 4 * k);
+      const opacity = object === glass ? glassOpacity : opacityOf(state, {...this.settings.values, others: 1}, ghosts);
+      colours.set([...(ghosts && state < State.partner ? palette.ghost : palette.states[state]!), opacity], 4 * k);
     });
     this.stage.near.setColours(colours);
   }
 
   private outline(palette: Palette): void {
-    const boxes = this.selection.objects.map(object => this.picker.addBox(new THREE.Box3(), object)).filter(box => !box.isEmpty());
-    const bounds = new Float32Array(6 * boxes.length);
-    boxes.forEach((box, k) => bounds.set([...box.min.toArray(), ...box.max.toArray()], 6 * k));
-    this.stage.outlines.set(bounds, boxes.length, () => palette.states[State.selected]!);
+    const {objects, isPair} = this.selection;
+    // The shapes of a pair are seen better without boxes around them.
+    const marked = objects.map((object, k) => ({part: this.picker.part(object), colour: palette.states[k === 0 ? State.selected : State.second]!}))
+      .filter(({part}) => !part.box.isEmpty() && !(isPair && part.shape));
+    const bounds = new Float32Array(6 * marked.length);
+    marked.forEach(({part: {box}}, k) => bounds.set([...box.min.toArray(), ...box.max.toArray()], 6 * k));
+    this.stage.outlines.set(bounds, marked.length, k => marked[k]!.colour);
   }
 
+  // Shows the contacts of the selection or of all collisions. Those of a pair are known already.
   private async showContacts(): Promise<void> {
     const {view, frame} = this.model;
     const {contacts} = this.settings.values;
-    const [first, second] = this.selection.objects;
-    const wanted = view.has.contacts && (contacts === 'all' || (contacts === 'selection' && first !== undefined));
-    const now = wanted ? `${frame.info.frame} ${contacts} ${contacts === 'all' ? '' : `${first},${second ?? ''}`} ${isDark(this.settings)}` : '';
+    const {objects, isPair} = this.selection;
+    const wanted = view.has.contacts && (contacts === 'all' || (contacts === 'selection' && objects.length === 1));
+    if (!wanted) return this.drawContacts([]);
+    const object = contacts === 'all' ? undefined : objects[0];
+    const now = `${frame.info.frame} ${object ?? ''}`;
+    if (now === this.contactsNow && this.contactRows) return this.drawContacts(this.contactRows);
+    if (isPair) this.drawContacts([]);
     if (now === this.contactsNow) return;
     this.contactsNow = now;
+    this.contactRows = null;
     this.contactRequest.abort();
     this.contactRequest = new AbortController();
     const {signal} = this.contactRequest;
     try {
-      const object = contacts === 'all' ? undefined : first;
-      const answer = wanted ? await this.source.collisions(frame.info.frame, {from: 0, count: 1000, sort: 'depth', object}, signal) : {rows: []};
+      const {rows} = await this.source.collisions(frame.info.frame, {from: 0, count: 1000, sort: 'worst', object}, signal);
       if (signal.aborted) return;
-      const rows = object === undefined || second === undefined ? answer.rows :
-        answer.rows.filter(row => row.a === second || row.b === second);
-      this.stage.contacts.show(this.model, rows, this.palette().contact, 0.02 * this.stage.camera.radius());
-      this.stage.invalidate();
+      this.contactRows = rows;
+      this.drawContacts(rows);
     } catch (error) {
       this.fail(error);
     }
   }
 
+  private drawContacts(rows: readonly Collision[]): void {
+    const {focus, stage} = this;
+    const {collision} = this.selection;
+    const pair = focus && collision && this.settings.values.contacts !== 'none' ? {row: collision, focus} : null;
+    const others = pair ? rows.filter(row => row.a !== collision!.a || row.b !== collision!.b) : rows;
+    stage.contacts.show(this.model, pair ? [...others, collision!] : others, pair,
+      {palette: this.palette(), least: focus ? 0.15 * focus.reach : 0.02 * stage.camera.radius()});
+    stage.invalidate();
+  }
+
   private showLegend(): void {
-    const boxes = legend(this.model, this.states, this.settings.values, this.palette());
-    showLegend([...boxes, ...this.stage.octants.legend()]);
+    const {objects, isPair} = this.selection;
+    const names = isPair ? objects.map((object, k) => tail(this.selection.nameOf(k)) || `object ${object}`) : null;
+    const boxes = legend(this.model, this.states, {values: this.settings.values, palette: this.palette(), look: this.look}, names);
+    const common = this.stage.caps.hasCommon ? [{text: 'in both', colour: this.palette().contact}] : [];
+    showLegend([...boxes.slice(0, 2), ...common, ...boxes.slice(2), ...this.stage.octants.legend()]);
   }
 
   // A notice that stays, such as the end of the program.

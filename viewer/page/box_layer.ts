@@ -2,11 +2,22 @@
 import * as THREE from 'three';
 import {facesMaterial, pointsMaterial, type SharedUniforms} from './box_material.ts';
 import {blockRows, BoxTexture} from './box_texture.ts';
+import {Pass, passOf, setBlending} from './draw_pass.ts';
+
+export interface Scale {
+  pixelsPerUnit: number;
+  // The part of each block that is drawn while the camera moves.
+  share: number;
+  // Where ghosts are drawn.
+  ghosts: THREE.Sphere;
+}
 
 interface Block {
   start: number;
   count: number;
   visible: number;
+  // The number of rows in each pass.
+  inPass: number[];
   box: THREE.Box3;
 }
 
@@ -50,10 +61,14 @@ export class BoxLayer {
     const to = new Uint32Array(this.texture.colourData.buffer);
     for (const block of this.blocks) {
       block.visible = 0;
+      block.inPass.fill(0);
       for (let slot = block.start; slot < block.start + block.count; ++slot) {
         const row = this.rowOfSlot[slot]!;
         to[slot] = from[row]!;
-        if (colours[4 * row + 3]) block.visible += 1;
+        const pass = passOf(colours[4 * row + 3]!);
+        if (pass < 0) continue;
+        block.visible += 1;
+        block.inPass[pass]! += 1;
       }
     }
     this.texture.colours.needsUpdate = true;
@@ -65,26 +80,27 @@ export class BoxLayer {
     const material = (this.faces.material as THREE.RawShaderMaterial[])[0]!;
     material.uniforms.fill!.value = fill ?? -1;
     material.uniforms.faces!.value = fill === null ? 3 : 6;
-    material.transparent = fill !== null && fill > 0;
-    material.depthWrite = !material.transparent;
   }
 
-  // Chooses what to draw. `share` is the part of each block that is drawn while the camera moves.
-  choose(frustum: THREE.Frustum, eye: THREE.Vector3, pixelsPerUnit: number, share: number): void {
+  // Chooses what to draw in a pass.
+  choose(frustum: THREE.Frustum, eye: THREE.Vector3, {pixelsPerUnit, share, ghosts}: Scale, pass: number): void {
     this.drawn = 0;
     if (!this.faces || !this.points) return;
-    const perBox = 6 * ((this.faces.material as THREE.RawShaderMaterial[])[0]!.uniforms.faces!.value as number);
+    const material = (this.faces.material as THREE.RawShaderMaterial[])[0]!;
+    setBlending(material, pass !== Pass.solid || (this.fill !== null && this.fill > 0));
+    const perBox = 6 * (material.uniforms.faces!.value as number);
     this.faces.geometry.clearGroups();
     this.points.geometry.clearGroups();
     for (const block of this.blocks) {
-      if (!block.visible || !frustum.intersectsBox(block.box)) continue;
+      const rows = block.inPass[pass]!;
+      if (!rows || !frustum.intersectsBox(block.box) || (pass === Pass.ghost && !ghosts.intersectsBox(block.box))) continue;
       const least = this.pointPixels * block.box.distanceToPoint(eye) / pixelsPerUnit;
       const large = this.countLarger(block, least);
       const asBoxes = Math.ceil(large * share);
       const asPoints = Math.ceil((block.count - large) * share);
       append(this.faces.geometry, block.start * perBox, asBoxes * perBox);
       append(this.points.geometry, block.start + large, asPoints);
-      this.drawn += Math.round(block.visible * (asBoxes + asPoints) / block.count);
+      this.drawn += Math.round(rows * (asBoxes + asPoints) / block.count);
     }
   }
 
@@ -115,7 +131,7 @@ export class BoxLayer {
     for (let start = 0; start < rows; start += blockRows) {
       const count = Math.min(blockRows, rows - start);
       this.rowOfSlot.subarray(start, start + count).sort((a, b) => size[b]! - size[a]! || a - b);
-      this.blocks.push({start, count, visible: count, box: new THREE.Box3()});
+      this.blocks.push({start, count, visible: count, inPass: [count, 0, 0], box: new THREE.Box3()});
     }
     this.sizes = this.rowOfSlot.length ? Float32Array.from(this.rowOfSlot, row => size[row]!) : size;
   }

@@ -12,8 +12,8 @@ export class Camera {
   pitch = 0.5;
   up: 'y' | 'z' = 'z';
   fly = false;
-  // The place from which the whole scene was seen last.
-  private whole = '';
+  // The bounds that the camera was placed to see last, and the place that it got.
+  private fitted: {min: Point; max: Point; at: string} | null = null;
   // The part of the canvas's width, from the left, that a panel covers.
   covered = 0;
   // The part of its height, from below.
@@ -23,11 +23,15 @@ export class Camera {
   private sceneMin: Point = [0, 0, 0];
   private sceneMax: Point = [1, 1, 1];
 
-  // Where the camera looks from, as a direction from the target.
-  private outward(): THREE.Vector3 {
-    const flat = Math.cos(this.pitch);
-    const [a, b, c] = [flat * Math.cos(this.yaw), flat * Math.sin(this.yaw), Math.sin(this.pitch)];
+  // Where a camera with these angles looks from, as a direction from the target.
+  direction(yaw: number, pitch: number): THREE.Vector3 {
+    const flat = Math.cos(pitch);
+    const [a, b, c] = [flat * Math.cos(yaw), flat * Math.sin(yaw), Math.sin(pitch)];
     return this.up === 'z' ? new THREE.Vector3(a, b, c) : new THREE.Vector3(b, c, a);
+  }
+
+  private outward(): THREE.Vector3 {
+    return this.direction(this.yaw, this.pitch);
   }
 
   eye(): THREE.Vector3 {
@@ -67,11 +71,16 @@ export class Camera {
       this.target.addScaledVector(axes[0], middle(seen.map(([x, , z]) => x / (this.distance - z))));
       this.target.addScaledVector(axes[1], middle(seen.map(([, y, z]) => y / (this.distance - z))));
     }
+    this.fitted = {min, max, at: this.toText()};
   }
 
   fitScene(): void {
     this.fit(this.sceneMin, this.sceneMax);
-    this.whole = this.toText();
+  }
+
+  // Whether the camera is where fit() placed it.
+  get unmoved(): boolean {
+    return this.fitted?.at === this.toText();
   }
 
   rotate(yaw: number, pitch: number): void {
@@ -106,14 +115,26 @@ export class Camera {
   }
 
   // Takes the size of the canvas. The target is in the middle of what is not covered on the left and below.
-  // A camera that sees the whole scene, and was not moved, still does.
+  // A camera that was placed to see something, and was not moved, still sees it.
   resize(width: number, height: number, covered: number, below: number): void {
-    const unmoved = this.whole !== '' && this.toText() === this.whole;
+    const fitted = this.unmoved ? this.fitted : null;
     this.three.aspect = width / Math.max(height, 1);
     this.covered = covered / width;
     this.below = below / height;
     this.three.setViewOffset(width, height, -0.5 * covered, 0.5 * below, width, height);
-    if (unmoved) this.fitScene();
+    if (fitted) this.fit(fitted.min, fitted.max);
+  }
+
+  // A camera that sees the whole scene from a direction, for a picture of this aspect.
+  forOverview({yaw, pitch}: {yaw: number; pitch: number}, aspect: number): Camera {
+    const camera = new Camera();
+    camera.up = this.up;
+    camera.setScene(this.sceneMin, this.sceneMax);
+    camera.three.aspect = aspect;
+    camera.look(yaw, pitch);
+    camera.fitScene();
+    camera.place();
+    return camera;
   }
 
   // Gives the matrices of three.js the present place.

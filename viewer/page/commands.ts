@@ -57,16 +57,17 @@ function moveCommands(app: App): Command[] {
     {keys: ['-'], text: 'Zoom out', run: moved(() => camera.zoom(1.25))},
     {keys: Object.keys(looks), text: 'Look along an axis, or from a corner', run: key => moved(() => camera.look(...looks[key]!))()},
     {keys: ['h'], text: 'Zoom to all', run: () => app.zoomAll()},
-    {keys: ['f'], text: 'Zoom to the selection', run: () => app.zoomToSelection()},
+    {keys: ['f'], text: 'Zoom to the contact, or to the selected object', run: () => app.zoomToSelection()},
   ];
 }
 
 function selectCommands(app: App): Command[] {
   return [
     {keys: ['/'], text: 'Search', run: () => app.search.focus()},
-    {keys: ['n'], text: 'Next collision', run: () => app.table.step(1)},
+    {keys: ['n'], text: 'Next collision in the table, the worst first', run: () => app.table.step(1)},
     {keys: ['p'], text: 'Collision before', run: () => app.table.step(-1)},
-    {keys: ['Escape'], text: 'Clear the selection', run: () => void app.selection.select([])},
+    {keys: ['j'], text: 'Only the selected objects, or all', run: () => app.toggleOnlySelection()},
+    {keys: ['Escape'], text: 'Clear the selection: all objects in their colours', run: () => void app.clearSelection()},
   ];
 }
 
@@ -84,7 +85,8 @@ function viewCommands(app: App): Command[] {
     {keys: ['k'], text: 'Contacts', run: () => cycle(app, 'contacts', choices.contacts)},
     {keys: ['o'], text: 'Octants', run: () => toggle(settings, 'octants')},
     {keys: ['[', ']'], text: 'Level of the octants', run: key => changeLevel(app, key === ']' ? 1 : -1)},
-    {keys: ['x'], text: 'Axis of the section', run: () => cycle(app, 'section', choices.section)},
+    {keys: ['x'], text: 'Section through the contact, or across an axis', run: () =>
+      cycle(app, 'section', choices.section.filter(name => name !== 'contact' || app.hasContact()))},
     {keys: ['PageUp', 'PageDown'], text: 'Move the section', run: key => changeCut(settings, key === 'PageUp' ? 0.02 : -0.02)},
     {keys: ['r'], text: 'Other side of the section', run: () => toggle(settings, 'flip')},
     {keys: ['u'], text: 'Axis that is up', run: () => cycle(app, 'up', choices.up)},

@@ -67,7 +67,8 @@ export class EdgeLayer {
     this.group.clear();
     this.texture = new BoxTexture(Math.ceil(count * 1.2));
     const uniforms = {...this.shared, bounds: {value: this.texture.bounds}, colours: {value: this.texture.colours}};
-    const material = new THREE.RawShaderMaterial({glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, depthTest: this.depthTest});
+    const material = new THREE.RawShaderMaterial({glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, depthTest: this.depthTest,
+      transparent: true});
     this.lines = new THREE.LineSegments(endless(), [material]);
     this.lines.frustumCulled = false;
     this.group.add(this.lines);

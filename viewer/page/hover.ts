@@ -1,6 +1,6 @@
-// Labels over the canvas: what is under the pointer, and the depths of contacts.
+// Labels over the canvas: what is under the pointer, and the labels of contacts.
 import * as THREE from 'three';
-import {byId, count, counted, make, significant} from './dom.ts';
+import {byId, count, counted, make} from './dom.ts';
 import type {Octant} from './octant_layer.ts';
 import type {Stage} from './stage.ts';
 
@@ -22,7 +22,7 @@ export function octantText(octant: Octant): string {
   return `octant ${octant.code}, level ${octant.level}${kind}\n${counted(octant.entries, 'entry', 'entries')}, ${count(octant.begins)} begin here`;
 }
 
-// Places the labels of the depths after a picture was drawn.
+// Places the labels of contacts after a picture was drawn.
 export function placeDepths(stage: Stage): void {
   const host = byId('depths');
   const labels = stage.contacts.labels;
@@ -35,7 +35,7 @@ export function placeDepths(stage: Stage): void {
     const element = host.children[k] as HTMLElement;
     const at = stage.project(new THREE.Vector3().copy(label.at));
     const free = taken.every(other => Math.abs(other.x - at.x) > 100 || Math.abs(other.y - at.y) > 20);
-    const text = `depth ${significant(label.depth)}`;
+    const {text} = label;
     if (element.textContent !== text) element.textContent = text;
     element.hidden = !at.front || !free;
     if (!element.hidden) taken.push(at);

@@ -8,6 +8,8 @@ precision highp float;
 uniform mat4 projectionMatrix;
 uniform mat4 viewMatrix;
 uniform float pointSize;
+uniform vec3 cutLow;
+uniform vec3 cutHigh;
 in vec3 position;
 in vec3 color;
 out vec3 tint;
@@ -15,6 +17,7 @@ void main() {
   tint = color;
   gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
   gl_PointSize = pointSize;
+  if (pointSize > 0.0 && (any(lessThan(position, cutLow)) || any(greaterThan(position, cutHigh)))) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }
 `;
 
@@ -24,8 +27,10 @@ uniform float pointSize;
 in vec3 tint;
 out vec4 colour;
 void main() {
-  if (pointSize > 0.0 && length(gl_PointCoord - 0.5) > 0.5) discard;
-  colour = vec4(tint, 1.0);
+  // A point is a disc in a white ring, which is seen on any colour.
+  float radius = pointSize > 0.0 ? length(gl_PointCoord - 0.5) : 0.0;
+  if (radius > 0.5) discard;
+  colour = vec4(radius > 0.34 ? vec3(1.0) : tint, 1.0);
 }
 `;
 
@@ -47,8 +52,9 @@ export class LineLayer {
 
   // With a point size the vertices are drawn as round points instead of lines.
   constructor(shared: SharedUniforms, private readonly pointSize = 0, depthTest = false) {
+    // As something transparent, it is drawn after all that is solid and after glass.
     const uniforms = {...shared, pointSize: {value: pointSize}};
-    this.material = new THREE.RawShaderMaterial({glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, depthTest});
+    this.material = new THREE.RawShaderMaterial({glslVersion: THREE.GLSL3, vertexShader, fragmentShader, uniforms, depthTest, transparent: true});
   }
 
   set(list: VertexList): void {

@@ -12,6 +12,8 @@ export interface LinkState {
   camera: string | null;
   frame: number | null;
   selected: number[];
+  // The address has no link.
+  empty: boolean;
 }
 
 // Reads the link and sets the settings that it holds.
@@ -23,7 +25,8 @@ export function readLink(settings: Settings): LinkState {
   }
   const frame = parameters.get('frame');
   const selected = (parameters.get('selected') ?? '').split(',').filter(text => /^\d+$/.test(text)).map(Number);
-  return {camera: parameters.get('at'), frame: frame !== null && /^\d+$/.test(frame) ? Number(frame) : null, selected};
+  const number = frame !== null && /^\d+$/.test(frame) ? Number(frame) : null;
+  return {empty: location.hash.length < 2, camera: parameters.get('at'), frame: number, selected};
 }
 
 function linkText(settings: Settings, parts: LinkParts): string {

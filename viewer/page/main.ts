@@ -6,7 +6,7 @@ import {commands, copyLink, openHelp} from './commands.ts';
 import {byId, messageOf} from './dom.ts';
 import {Keyboard} from './keyboard.ts';
 import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
-import {readLink} from './link.ts';
+import {type LinkState, readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
 import {startWithin, tellReport} from './within_report.ts';
@@ -16,6 +16,7 @@ import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
 import {findSource, Missing, type Source, StillLoading} from './source.ts';
 import {Stage} from './stage.ts';
+import {firstQuery} from './table.ts';
 import {Timeline} from './timeline.ts';
 import {completeView, type SocketEvent, type Timeline as Numbers, type View} from './types.ts';
 
@@ -97,16 +98,18 @@ class Page {
     // The data come while the parts of the page start.
     const rows = early(model.load(this.source));
     const frame = view.kind === 'live' ? null : early(model.readFrame(this.source, first));
+    const worst = frame && link.empty ? early(this.source.collisions(first, firstQuery)) : null;
     this.startTimeline(view);
     const app = this.app = new App(this.source, model, settings, await stage, link.camera);
     app.timeline = this.timeline;
     this.prepare(app, link.camera !== null);
     await rows;
-    if (!frame) return this.startLive(app, link.selected);
+    if (!frame) return this.startLive(app, link);
     // A link may name a frame that is not computed yet.
-    await app.showFrame(first, frame).catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
+    const shown = worst ? app.showWorst(frame, worst) : app.showFrame(first, frame);
+    await shown.catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
     await firstPicture(app);
-    const rest = this.readRest(app, link.selected);
+    const rest = this.readRest(app, link);
     if (this.source.exported) startWithin(app);
     // The picture stays if the rest cannot be read.
     return rest.catch((error: unknown) => app.fail(error));
@@ -122,11 +125,11 @@ class Page {
     offerHooks(app);
   }
 
-  private startLive(app: App, selected: number[]): Promise<void> {
+  private startLive(app: App, link: LinkState): Promise<void> {
     this.live = new LiveScene(app.model);
     showProgress('Waiting for the first frame', null);
     this.feed?.start();
-    return new Promise(done => this.firstFrame = () => done(firstPicture(app).then(() => this.readRest(app, selected))));
+    return new Promise(done => this.firstFrame = () => done(firstPicture(app).then(() => this.readRest(app, link))));
   }
 
   // The timeline takes its part of the page before the camera is placed.
@@ -141,14 +144,17 @@ class Page {
   }
 
   // Reads and starts what the first picture does not need.
-  private async readRest(app: App, selected: number[]): Promise<void> {
+  private async readRest(app: App, link: LinkState): Promise<void> {
     const {view} = app.model;
     app.startOptions();
     const live = view.kind === 'live';
-    await Promise.all([app.followFrame(), live || !this.timeline ? null : this.readTimeline(), view.has.shapes ? this.readShapes(app) : null,
-      app.model.loadRows(this.source)]);
+    await Promise.all([app.followFrame(!app.table.rows.length), live || !this.timeline ? null : this.readTimeline(),
+      view.has.shapes ? this.readShapes(app) : null, app.model.loadRows(this.source)]);
     app.recolour();
-    if (selected.length) await app.selection.select(selected);
+    if (link.selected.length) await (link.camera === null ? app.openAll(link.selected) : app.selection.select(link.selected));
+    if (live && link.empty) app.selectWorstSoon();
+    await app.near.update();
+    app.overview.draw();
     app.stage.drawNow();
     document.documentElement.dataset.complete = 'true';
   }
@@ -166,7 +172,7 @@ class Page {
 
   private async readShapes(app: App): Promise<void> {
     await app.stage.shapes.load(this.source, app.model, () => app.recolour());
-    app.recolour();
+    app.shapesArrived();
     document.documentElement.dataset.shapes = String(app.stage.shapes.shapes.size);
   }
 
@@ -236,7 +242,7 @@ class Page {
       return;
     }
     this.lastTable = performance.now();
-    void app.table.load();
+    void app.table.load().then(() => app.selectWorst());
     app.selection.refresh().catch(error => app.fail(error));
     if (settings.values.octants) void app.showOctants();
   }
@@ -252,6 +258,8 @@ async function startStage(): Promise<Stage> {
 
 // The values that this scene begins with.
 function beginSettings(view: View): void {
+  // A running scene shows where collisions begin.
+  if (view.kind === 'live') settings.begin('ghosts', false);
   settings.begin('up', view.up === 'y' ? 'y' : 'z');
   if (view.has.shapes) settings.begin('style', 'shapes');
   if (view.has.boxes) return;

@@ -15,6 +15,7 @@ export class Options {
     this.choice('colour', 'Colour by', choices.colour.filter(name => (name !== 'group' || has.groups) && (name !== 'level' || kind !== 'live')));
     if (has.shapes) this.choice('style', 'Draw', choices.style);
     this.choice('show', 'Show', choices.show);
+    this.toggle('ghosts', 'Ghost others');
     this.number('others', 'Opacity', 0.1, 1, 0.05);
     this.toggle('edges', 'Edges');
     this.choice('lines', 'Pair lines', choices.lines);

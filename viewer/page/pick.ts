@@ -60,17 +60,28 @@ function hitBoxes(scene: PickScene, ray: THREE.Ray): Hit[] {
 function hitShape(scene: PickScene, hit: Hit, ray: THREE.Ray): number {
   const found = scene.shapeOf!(hit.row);
   if (!found) return hit.at;
-  const {shape, pose: p} = found;
+  let best = Infinity;
+  forEachHit(found.shape, found.pose, ray, where => {
+    if (scene.cut.containsPoint(where)) best = Math.min(best, where.distanceTo(ray.origin));
+  });
+  return best;
+}
+
+// The distance to the last triangle of a shape that a ray hits, or 0.
+export function lastHit(shape: Shape, pose: Float32Array, ray: THREE.Ray): number {
+  let last = 0;
+  forEachHit(shape, pose, ray, where => last = Math.max(last, where.distanceTo(ray.origin)));
+  return last;
+}
+
+function forEachHit(shape: Shape, p: Float32Array, ray: THREE.Ray, use: (where: THREE.Vector3) => void): void {
   const pose = new THREE.Matrix4().set(p[0]!, p[3]!, p[6]!, p[9]!, p[1]!, p[4]!, p[7]!, p[10]!, p[2]!, p[5]!, p[8]!, p[11]!, 0, 0, 0, 1);
   const inside = ray.clone().applyMatrix4(pose.clone().invert());
   const corners = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()] as const;
   const where = new THREE.Vector3();
-  let best = Infinity;
   for (let k = 0; k + 2 < shape.triangles.length; k += 3) {
     corners.forEach((corner, c) => corner.fromArray(shape.vertices, 3 * shape.triangles[k + c]!));
     if (!inside.intersectTriangle(corners[0], corners[1], corners[2], false, where)) continue;
-    where.applyMatrix4(pose);
-    if (scene.cut.containsPoint(where)) best = Math.min(best, where.distanceTo(ray.origin));
+    use(where.applyMatrix4(pose));
   }
-  return best;
 }

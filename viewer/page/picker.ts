@@ -2,24 +2,31 @@
 import * as THREE from 'three';
 import type {App} from './app.ts';
 import {pickRow} from './pick.ts';
+import {Pass} from './draw_pass.ts';
+import type {Part} from './focus.ts';
 import type {Shape} from './shape_layer.ts';
 
 export class Picker {
   constructor(private readonly app: App) {}
 
-  // The object at a point of the page, or -1.
+  // The object at a point of the page, or -1. Ghosts are behind all others.
   pick(x: number, y: number): number {
+    const front = this.pickAmong(x, y, pass => pass === Pass.solid || pass === Pass.glass);
+    return front < 0 && this.app.stage.ghosts ? this.pickAmong(x, y, pass => pass === Pass.ghost) : front;
+  }
+
+  private pickAmong(x: number, y: number, shown: (pass: number) => boolean): number {
     const {stage, model, near, settings} = this.app;
     const ray = stage.ray(x, y);
     const slack = 1.2 / stage.pixelsPerUnit();
     const asShapes = settings.values.style !== 'boxes' && stage.shapes.shapes.size > 0;
     const hit = pickRow({
       boxes: model.frame.boxes, layer: stage.boxes, shapeOf: asShapes ? row => this.shapeOf(row) : null,
-      visible: row => this.app.visible(row), cut: stage.cut, slack,
+      visible: row => shown(this.app.passOf(row)), cut: stage.cut, slack,
     }, ray);
     if (!near.shown) return hit.row < 0 ? -1 : model.objectOf(hit.row);
     const {boxes, objects} = near.shown;
-    const nearHit = pickRow({boxes, layer: stage.near, shapeOf: null, visible: row => this.app.nearVisible(row), cut: stage.cut, slack}, ray);
+    const nearHit = pickRow({boxes, layer: stage.near, shapeOf: null, visible: row => shown(this.app.nearPassOf(row)), cut: stage.cut, slack}, ray);
     if (nearHit.at < hit.at) return objects[nearHit.row]!;
     return hit.row < 0 ? -1 : model.objectOf(hit.row);
   }
@@ -36,11 +43,20 @@ export class Picker {
     if (row >= 0) {
       if (model.exists(row)) add(model.frame.boxes, row);
     } else if (nearRow >= 0) add(near.shown!.boxes, nearRow);
-    else if (selection.info?.index === object && selection.info.box) {
-      to.expandByPoint(new THREE.Vector3(...model.toRelative(selection.info.box.min)));
-      to.expandByPoint(new THREE.Vector3(...model.toRelative(selection.info.box.max)));
+    else {
+      const {info, collision} = selection;
+      const which = [collision?.a, collision?.b].indexOf(object);
+      const box = info?.index === object ? info.box : collision?.boxes?.[which];
+      for (const corner of box ? [box.min, box.max] : []) to.expandByPoint(new THREE.Vector3(...model.toRelative(corner)));
     }
     return to;
+  }
+
+  // The box of an object, and its shape if shapes are drawn.
+  part(object: number): Part {
+    const row = this.app.model.rowOf(object);
+    const asShape = row >= 0 && this.app.settings.values.style !== 'boxes';
+    return {box: this.addBox(new THREE.Box3(), object), shape: asShape ? this.shapeOf(row) : null};
   }
 
   private shapeOf(row: number): {shape: Shape; pose: Float32Array} | null {

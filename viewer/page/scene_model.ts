@@ -9,6 +9,8 @@ export interface Frame {
   boxes: Float32Array;
   poses: Float32Array | null;
   partners: Uint32Array;
+  // The class of the worst pair of each row's object, if exact tests found classes.
+  classes: Uint8Array | null;
   levels: Uint8Array | null;
   pairs: Uint32Array;
   began: Uint32Array;
@@ -22,7 +24,7 @@ export class SceneModel {
   geometry: Uint32Array | null = null;
   names: string[] | null = null;
   frame: Frame = {
-    info: {frame: 0, pairs: 0}, boxes: new Float32Array(0), poses: null, partners: noPairs, levels: null, pairs: noPairs, began: noPairs,
+    info: {frame: 0, pairs: 0}, boxes: new Float32Array(0), poses: null, partners: noPairs, classes: null, levels: null, pairs: noPairs, began: noPairs,
     ended: noPairs,
   };
   private rowsByObject: Map<number, number> | null = null;
@@ -132,12 +134,14 @@ export class SceneModel {
     const {has} = this.view;
     const events = (name: string): Promise<ArrayBuffer | null> =>
       has.events ? orNull(source.bytes(`${name}/${frame}.u32`)) : Promise.resolve(null);
-    const [info, boxes, partners, poses, began, ended] = await Promise.all([
+    const [info, boxes, partners, poses, classes, began, ended] = await Promise.all([
       source.json<FrameInfo>(`frame/${frame}.json`), source.bytes(`frame/${frame}.f32`), orNull(source.bytes(`partners/${frame}.u32`)),
-      has.shapes ? orNull(source.bytes(`poses/${frame}.f32`)) : null, events('began'), events('ended'),
+      has.shapes ? orNull(source.bytes(`poses/${frame}.f32`)) : null,
+      has.classes ? orNull(source.bytes(`classes/${frame}.u8`)) : null, events('began'), events('ended'),
     ]);
     return {
       info, boxes: new Float32Array(boxes), poses: poses && new Float32Array(poses), levels: null,
+      classes: classes && new Uint8Array(classes),
       partners: partners ? list(partners) : new Uint32Array(this.rows), pairs: noPairs, began: list(began), ended: list(ended),
     };
   }

@@ -1,60 +1,89 @@
-// The selected objects, one or the two of a pair, and the panel that describes the first.
-import {byId, button, count, counted, definitions, make, plain, tail} from './dom.ts';
+// The selected objects: one, or the two of a pair.
+import {counted, isAbort, tail} from './dom.ts';
 import {isOpen} from './layout.ts';
 import {say, speak} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
+import {type PairView, SelectionPanel} from './selection_panel.ts';
 import {Missing, type Source, Unreachable} from './source.ts';
-import type {ObjectInfo} from './types.ts';
+import type {Collision, ObjectInfo, Point} from './types.ts';
 
 export interface SelectionActions {
   changed(): void;
+  clear(): void;
   zoom(): void;
+  onlySelection(): void;
+  section(): void;
+  place(): Point | null;
 }
-
-const buttonLimit = 200;
 
 export class Selection {
   objects: number[] = [];
   partners: number[] = [];
+  // What is known of a single object, or of the collision of a pair.
   info: ObjectInfo | null = null;
-  private readonly panel = byId('selection');
+  collision: Collision | null = null;
+  private readonly panel: SelectionPanel;
   private request = 0;
 
-  constructor(private readonly source: Source, private readonly model: SceneModel, private readonly actions: SelectionActions) {}
-
-  async select(objects: number[]): Promise<void> {
-    this.objects = [...new Set(objects)].filter(k => Number.isInteger(k) && k >= 0 && k < this.model.view.objects).slice(0, 2);
-    if (this.objects.length === 0) {
-      this.request += 1;
-      this.info = null;
-      this.partners = [];
-      this.panel.hidden = true;
-      this.panel.replaceChildren();
-      return this.actions.changed();
-    }
-    this.partners = this.model.partnersOf(this.objects[0]!);
-    this.actions.changed();
-    await this.refresh();
-    if (!this.info) return;
-    const names = this.objects.map(k => this.title(k)).join(' and ');
-    // With a closed panel nothing else names the selection.
-    (isOpen('side') ? speak : say)(`${names} selected, ${counted(this.info.partner_count, 'partner', 'partners')}`);
+  constructor(private readonly source: Source, private readonly model: SceneModel, private readonly actions: SelectionActions) {
+    this.panel = new SelectionPanel(model, {...actions, select: objects => void this.select(objects)});
   }
 
-  // Reads the first object again, for another frame or another selection.
+  get isPair(): boolean {
+    return this.objects.length === 2;
+  }
+
+  // Selects a pair before anything is drawn: nothing changes on the page yet but the panel.
+  begin(row: Collision): void {
+    this.objects = [row.a, row.b];
+    this.collision = row;
+    this.panel.showPair(this.pairView());
+  }
+
+  // Selects objects. `row` is the collision of a pair, if it is known.
+  async select(objects: number[], row: Collision | null = null): Promise<void> {
+    const chosen = this.objects = [...new Set(objects)].filter(k => Number.isInteger(k) && k >= 0 && k < this.model.view.objects).slice(0, 2);
+    this.request += 1;
+    this.info = null;
+    this.collision = this.isPair ? row : null;
+    this.partners = this.objects.length === 1 ? this.model.partnersOf(this.objects[0]!) : [];
+    if (this.objects.length === 0) this.panel.clear();
+    if (this.collision) this.panel.showPair(this.pairView());
+    this.actions.changed();
+    if (!this.collision) await this.refresh();
+    if (chosen.length && chosen === this.objects) this.tell();
+  }
+
+  // Reads the selection again, for another frame or another selection.
   async refresh(): Promise<void> {
-    const first = this.objects[0];
-    if (first === undefined) return;
+    if (this.objects.length === 0) return;
     const request = ++this.request;
-    const info = await this.read(first);
+    const {objects} = this;
+    const read = this.isPair ? this.readPair(objects) : this.readObject(objects[0]!);
+    const found = await read;
     if (request !== this.request) return;
-    this.info = info;
-    this.partners = info.partners;
-    this.show(info);
+    if (this.isPair) {
+      this.collision = found as Collision | null;
+      this.panel.showPair(this.pairView());
+    } else {
+      this.info = found as ObjectInfo;
+      this.partners = this.info.partners;
+      this.panel.showObject(this.info);
+    }
     this.actions.changed();
   }
 
-  private async read(object: number): Promise<ObjectInfo> {
+  private async readPair([object, other]: number[]): Promise<Collision | null> {
+    try {
+      const answer = await this.source.collisions(this.model.frame.info.frame, {from: 0, count: 1, sort: 'pair', object, with: other});
+      return answer.rows[0] ?? null;
+    } catch (error) {
+      if (error instanceof Missing || error instanceof Unreachable || isAbort(error)) return this.collision;
+      throw error;
+    }
+  }
+
+  private async readObject(object: number): Promise<ObjectInfo> {
     if (this.source.exported) return this.model.describe(object);
     try {
       return await this.source.json<ObjectInfo>(`object/${this.model.frame.info.frame}/${object}.json`);
@@ -64,54 +93,22 @@ export class Selection {
     }
   }
 
-  private show(info: ObjectInfo): void {
-    this.panel.hidden = false;
-    const head = make('div', '', 'head');
-    head.append(make('h2', tail(info.name ?? '') || `Object ${info.index}`), button('Zoom', () => this.actions.zoom(), 'Zoom to the selection'),
-      button('×', () => void this.select([]), 'Clear the selection'));
-    this.panel.replaceChildren(head, definitions(this.entries(info)), this.partnerList(info));
+  private pairView(): PairView {
+    return {objects: [this.objects[0]!, this.objects[1]!], row: this.collision, names: [this.nameOf(0), this.nameOf(1)]};
   }
 
-  private entries(info: ObjectInfo): [string, string][] {
-    const entries: [string, string][] = [['index', String(info.index)]];
-    const place = placeText(info);
-    if (info.name && tail(info.name) !== info.name) entries.push(['name', info.name]);
-    const other = this.objects[1];
-    if (other !== undefined) entries.push(['with', this.title(other)]);
-    for (const [name, value] of Object.entries(info.details ?? {})) entries.push([name, plain(value)]);
-    if (info.box) entries.push(['min', place(info.box.min)], ['max', place(info.box.max)]);
-    if (info.code) entries.push(['octal code', info.code]);
-    if (info.level !== undefined) entries.push(['level', String(info.level)]);
-    if (info.groups !== undefined) entries.push(['groups', `0x${info.groups.toString(16)}`]);
-    if (info.row < 0) entries.push(['drawn', 'only near the target']);
-    return entries;
+  // The name of the first or second object of a pair. Objects that are not drawn have their names in the row.
+  nameOf(which: number): string {
+    const object = this.objects[which]!;
+    const row = this.collision;
+    return this.model.nameOf(object) || (row?.a === object ? row.name_a : row?.b === object ? row.name_b : '') || '';
   }
 
-  private title(object: number): string {
-    const name = this.model.nameOf(object);
-    return name ? `${object} ${tail(name)}` : String(object);
+  // Says what is selected. With a closed panel nothing else names the selection.
+  private tell(): void {
+    const names = this.objects.map((object, k) => `${object} ${tail(this.nameOf(k))}`.trim()).join(' and ');
+    const word = this.collision?.class ? `, ${this.collision.class}` : '';
+    const more = this.info ? `, ${counted(this.info.partner_count, 'partner', 'partners')}` : word;
+    (isOpen('side') ? speak : say)(`${names} selected${more}`);
   }
-
-  private partnerList(info: ObjectInfo): HTMLElement {
-    const box = make('div');
-    const listed = Math.min(info.partners.length, buttonLimit);
-    const rest = info.partner_count > listed ? `, ${count(listed)} listed` : '';
-    box.append(make('h3', info.partner_count === 0 ? 'No partners' : counted(info.partner_count, 'partner', 'partners') + rest));
-    const list = make('ul', '', 'chips');
-    for (const partner of info.partners.slice(0, listed)) {
-      const item = make('li');
-      item.append(button(this.title(partner), () => void this.select([partner]), `Select object ${this.title(partner)}`));
-      list.append(item);
-    }
-    if (listed) box.append(list);
-    return box;
-  }
-}
-
-// Coordinates with as many digits as the size of the box needs, also far from the origin.
-function placeText(info: ObjectInfo): (point: readonly number[]) => string {
-  const {min, max} = info.box ?? {min: [0, 0, 0], max: [0, 0, 0]};
-  const size = Math.max(...max.map((value, k) => value - min[k]!)) || Math.max(...max.map(Math.abs)) || 1;
-  const decimals = Math.min(Math.max(3 - Math.floor(Math.log10(size)), 0), 12);
-  return point => point.map(value => value.toLocaleString('en-US', {maximumFractionDigits: decimals})).join(', ');
 }

@@ -6,12 +6,13 @@ export interface Values {
   style: 'boxes' | 'shapes' | 'both';
   show: 'all' | 'colliding' | 'selection';
   others: number;
+  ghosts: boolean;
   edges: boolean;
   octants: boolean;
   level: number;
   lines: 'none' | 'selection' | 'all';
   contacts: 'none' | 'selection' | 'all';
-  section: 'none' | 'x' | 'y' | 'z';
+  section: 'none' | 'contact' | 'x' | 'y' | 'z';
   cut: number;
   flip: boolean;
   up: 'y' | 'z';
@@ -19,7 +20,7 @@ export interface Values {
 }
 
 export const defaults: Values = {
-  theme: 'system', colour: 'state', style: 'boxes', show: 'all', others: 1, edges: true, octants: false, level: -1, lines: 'selection',
+  theme: 'system', colour: 'state', style: 'boxes', show: 'all', others: 1, ghosts: true, edges: true, octants: false, level: -1, lines: 'selection',
   contacts: 'selection', section: 'none', cut: 0.5, flip: false, up: 'z', camera: 'orbit',
 };
 
@@ -30,7 +31,7 @@ export const choices = {
   show: ['all', 'colliding', 'selection'],
   lines: ['none', 'selection', 'all'],
   contacts: ['none', 'selection', 'all'],
-  section: ['none', 'x', 'y', 'z'],
+  section: ['none', 'contact', 'x', 'y', 'z'],
   up: ['y', 'z'],
   camera: ['orbit', 'fly'],
 } as const;

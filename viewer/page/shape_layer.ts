@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import {type SharedUniforms} from './box_material.ts';
 import {screenDoor} from './box_texture.ts';
+import {inPass, Pass, passOf, setBlending} from './draw_pass.ts';
 import type {SceneModel} from './scene_model.ts';
 import {surfaceOf} from './shape_surface.ts';
 import type {Source} from './source.ts';
@@ -19,11 +20,12 @@ in vec3 poseAt;
 in vec4 tintOfRow;
 flat out vec4 tint;
 out vec3 world;
+${inPass}
 void place() {
   tint = tintOfRow;
   world = poseX * position.x + poseY * position.y + poseZ * position.z + poseAt;
   gl_Position = projectionMatrix * viewMatrix * vec4(world, 1.0);
-  if (tint.a == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (!inPass(tint.a)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }
 `;
 
@@ -34,13 +36,14 @@ precision highp int;
 uniform vec3 eye;
 uniform vec3 cutLow;
 uniform vec3 cutHigh;
+uniform int drawPass;
 flat in vec4 tint;
 in vec3 world;
 out vec4 colour;
 ${screenDoor}
 void cutOff() {
   if (any(lessThan(world, cutLow)) || any(greaterThan(world, cutHigh))) discard;
-  screenDoor(tint.a);
+  if (drawPass == 0) screenDoor(tint.a);
 }
 `;
 
@@ -63,6 +66,12 @@ void main() {
   cutOff();
   vec3 normal = normalize(dot(bent, bent) > 0.0 ? bent : face);
   normal = faceforward(normal, world - eye, normal);
+  if (drawPass > 0) {
+    // Like glass: faint where the surface faces the eye, and strong at its outline.
+    float turned = pow(1.0 - abs(dot(normal, normalize(eye - world))), 2.5);
+    colour = drawPass == 1 ? vec4(tint.rgb, 0.04 + 0.22 * turned) : vec4(tint.rgb, 0.1 + 0.5 * turned);
+    return;
+  }
   vec3 weight = normal * normal;
   vec3 shade = mix(shadeLow, shadeHigh, step(0.0, normal));
   colour = vec4(tint.rgb * dot(weight, shade), 1.0);
@@ -81,7 +90,7 @@ const edgeFragment = `${cutting}
 uniform vec3 edgeColour;
 void main() {
   cutOff();
-  colour = vec4(mix(tint.rgb, edgeColour, 0.4), 1.0);
+  colour = vec4(mix(tint.rgb, edgeColour, 0.4), drawPass == 0 ? 1.0 : drawPass == 1 ? 0.15 : 0.4);
 }
 `;
 
@@ -127,6 +136,8 @@ interface Part {
   objects: (THREE.Mesh | THREE.LineSegments)[];
   poses: THREE.InstancedInterleavedBuffer;
   tints: THREE.InstancedBufferAttribute;
+  // The number of rows in each pass.
+  inPass: number[];
 }
 
 export const shapeLimit = 4000;
@@ -209,14 +220,19 @@ export class ShapeLayer {
     this.group.add(lines);
   }
 
+  // Chooses the shapes of a pass.
+  setPass(pass: number): void {
+    for (const material of [this.faces, this.lines]) setBlending(material, pass !== Pass.solid);
+    // Glass with its far side would be too dim.
+    this.faces.side = pass === Pass.glass ? THREE.FrontSide : THREE.DoubleSide;
+    for (const part of this.parts) for (const object of part.objects) object.visible = part.inPass[pass]! > 0;
+  }
+
   // Draws a share of the instances while the camera moves. Shapes with one instance are drawn or left out as a whole.
   choose(share: number): void {
     this.parts.forEach((part, k) => {
       const count = share === 1 ? part.rows.length : Math.floor(part.rows.length * share + 0.618 * k % 1);
-      for (const object of part.objects) {
-        object.visible = count > 0;
-        (object.geometry as THREE.InstancedBufferGeometry).instanceCount = count;
-      }
+      for (const object of part.objects) (object.geometry as THREE.InstancedBufferGeometry).instanceCount = count;
     });
   }
 
@@ -236,7 +252,7 @@ export class ShapeLayer {
     const rows = Uint32Array.from(rowList);
     const poses = new THREE.InstancedInterleavedBuffer(new Float32Array(12 * rows.length), 12);
     const tints = new THREE.InstancedBufferAttribute(new Uint8Array(4 * rows.length), 4, true);
-    const part: Part = {kind, shape, rows, objects: [], poses, tints};
+    const part: Part = {kind, shape, rows, objects: [], poses, tints, inPass: [rows.length, 0, 0]};
     const geometry = this.geometry(part, shape.vertices);
     geometry.setIndex(new THREE.BufferAttribute(shape.triangles, 1));
     if (kind === 'plane') geometry.setAttribute('across', planeCoordinates(shape.vertices));
@@ -267,9 +283,13 @@ export class ShapeLayer {
 
   private tint(part: Part): void {
     if (!this.colours.length) return;
+    part.inPass.fill(0);
     part.rows.forEach((row, k) => {
       (part.tints.array as Uint8Array).set(this.colours.subarray(4 * row, 4 * row + 4), 4 * k);
-      if (this.colours[4 * row + 3]) this.visible += 1;
+      const pass = passOf(this.colours[4 * row + 3]!);
+      if (pass < 0) return;
+      this.visible += 1;
+      part.inPass[pass]! += 1;
     });
     part.tints.needsUpdate = true;
   }

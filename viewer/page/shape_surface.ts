@@ -105,6 +105,23 @@ function sharpEdges(vertices: Float32Array, faces: Float32Array, vertexOf: Uint3
   return Float32Array.from(lines);
 }
 
+// Whether each edge has two faces, so that the shape has an inside.
+export function isClosed(vertices: Float32Array, triangles: Uint32Array): boolean {
+  const same = weld(vertices);
+  const count = vertices.length / 3;
+  const open = new Set<number>();
+  for (let t = 0; t + 2 < triangles.length; t += 3) {
+    const corners = [0, 1, 2].map(k => same[triangles[t + k]!]!);
+    if (new Set(corners).size < 3) continue;
+    corners.forEach((v, k) => {
+      const w = corners[(k + 1) % 3]!;
+      const key = Math.min(v, w) * count + Math.max(v, w);
+      if (!open.delete(key)) open.add(key);
+    });
+  }
+  return open.size === 0;
+}
+
 export function surfaceOf(vertices: Float32Array, triangles: Uint32Array): Surface {
   const same = weld(vertices);
   const vertexOf = triangles.map(v => same[v]!);

@@ -1,4 +1,5 @@
 // Reads the addresses of the protocol, from the server or from the elements of an exported page. Callers see no difference.
+import {compareWorst} from './collision.ts';
 import {isAbort} from './dom.ts';
 import type {Collision, CollisionQuery, Collisions} from './types.ts';
 
@@ -36,7 +37,7 @@ export class ServerSource implements Source {
 
   collisions(frame: number, query: CollisionQuery, signal?: AbortSignal): Promise<Collisions> {
     const parameters = new URLSearchParams({from: String(query.from), count: String(query.count), sort: query.sort});
-    if (query.object !== undefined) parameters.set('object', String(query.object));
+    for (const name of ['object', 'with'] as const) if (query[name] !== undefined) parameters.set(name, String(query[name]));
     if (query.q) parameters.set('q', query.q);
     return this.json(`collisions/${frame}.json?${parameters}`, signal);
   }
@@ -96,9 +97,10 @@ export function selectCollisions(rows: Collision[], query: CollisionQuery): Coll
   const lower = (query.q ?? '').toLowerCase();
   const fits = (row: Collision): boolean => !lower || String(row.a) === lower || String(row.b) === lower ||
     (row.name_a ?? '').toLowerCase().includes(lower) || (row.name_b ?? '').toLowerCase().includes(lower);
-  const kept = rows.filter(row => (query.object === undefined || row.a === query.object || row.b === query.object) && fits(row));
+  const has = (row: Collision, object: number | undefined): boolean => object === undefined || row.a === object || row.b === object;
+  const kept = rows.filter(row => has(row, query.object) && has(row, query.with) && fits(row));
   const byPair = (p: Collision, q: Collision): number => p.a - q.a || p.b - q.b;
-  if (query.sort === 'depth') return kept.sort((p, q) => (q.depth ?? 0) - (p.depth ?? 0) || byPair(p, q));
+  if (query.sort === 'worst') return kept.sort(compareWorst);
   if (query.sort === 'began') return kept.sort((p, q) => Number(q.change === 'began') - Number(p.change === 'began') || byPair(p, q));
   return kept.sort(byPair);
 }

@@ -1,9 +1,13 @@
 // The table of collisions: pages of rows, sorted and filtered by the source.
-import {byId, count, counted, isAbort, make, significant, tail} from './dom.ts';
+import {classTone, measureOf} from './collision.ts';
+import {byId, count, counted, isAbort, make, tail} from './dom.ts';
 import type {Source} from './source.ts';
-import type {Collision, CollisionQuery} from './types.ts';
+import type {Collision, CollisionQuery, Collisions} from './types.ts';
 
 const pageRows = 100;
+
+// The rows that the table begins with.
+export const firstQuery: CollisionQuery = {from: 0, count: pageRows, sort: 'worst'};
 
 export interface TableActions {
   frame(): number;
@@ -22,7 +26,7 @@ export class Table {
   private readonly only = byId<HTMLInputElement>('only-selected');
   private readonly text = byId<HTMLInputElement>('filter');
 
-  constructor(private readonly source: Source, private readonly actions: TableActions, features: {contacts: boolean; events: boolean}) {
+  constructor(private readonly source: Source, private readonly actions: TableActions, hasEvents: boolean) {
     byId('previous-page').addEventListener('click', () => this.turn(-1));
     byId('next-page').addEventListener('click', () => this.turn(1));
     for (const control of [this.sort, this.only]) control.addEventListener('change', () => void this.load(0));
@@ -31,8 +35,7 @@ export class Table {
       clearTimeout(timer);
       timer = window.setTimeout(() => void this.load(0), 200);
     });
-    this.sort.querySelector<HTMLOptionElement>('[value=began]')!.hidden = !features.events;
-    this.sort.querySelector<HTMLOptionElement>('[value=depth]')!.hidden = !features.contacts;
+    this.sort.querySelector<HTMLOptionElement>('[value=began]')!.hidden = !hasEvents;
   }
 
   turn(step: number): void {
@@ -49,20 +52,26 @@ export class Table {
     const query: CollisionQuery = {from, count: pageRows, sort: this.sort.value, object, q: this.text.value.trim()};
     try {
       const answer = await this.source.collisions(this.actions.frame(), query, signal);
-      if (signal.aborted) return;
-      this.from = from;
-      this.total = answer.total;
-      this.rows = answer.rows;
-      this.show();
+      if (!signal.aborted) this.use(answer, from);
     } catch (error) {
       if (!isAbort(error)) this.actions.failed(error);
     }
+  }
+
+  // Shows rows that were read, and returns the first one.
+  use(answer: Collisions, from: number): Collision | null {
+    this.from = from;
+    this.total = answer.total;
+    this.rows = answer.rows;
+    this.show();
+    return this.rows[0] ?? null;
   }
 
   // The selection changed: marks its row, and reads other rows if only those of the selection are shown.
   selectionChanged(): void {
     if (this.only.checked) void this.load(0);
     this.mark();
+    this.body.querySelector('.marked')?.scrollIntoView({block: 'nearest'});
   }
 
   // Opens the row after or before the marked one.
@@ -83,8 +92,14 @@ export class Table {
       `${count(this.from + 1)} to ${count(last)} of ${counted(this.total, 'collision', 'collisions')}`;
     byId<HTMLButtonElement>('previous-page').disabled = this.from === 0;
     byId<HTMLButtonElement>('next-page').disabled = last >= this.total;
-    byId('depth-column').hidden = !this.rows.some(row => row.depth !== undefined);
-    byId('state-column').hidden = !this.rows.some(row => this.stateText(row));
+    const kinds = new Set(this.rows.map(row => measureOf(row)?.kind).filter(kind => kind));
+    const column = byId('depth-column');
+    column.hidden = kinds.size === 0 && !this.rows.some(row => row.class);
+    column.textContent = kinds.size === 0 ? 'depth' : ['depth', 'overlap', 'gap'].filter(kind => kinds.has(kind)).join(', ');
+    byId('state-column').hidden = !this.rows.some(row => this.changeText(row));
+    const none = byId('no-rows');
+    none.hidden = this.rows.length > 0;
+    none.textContent = this.text.value.trim() || this.only.checked ? 'No collision has these objects.' : 'No objects collide.';
     this.body.replaceChildren(...this.rows.map(row => this.makeRow(row)));
     this.mark();
   }
@@ -93,16 +108,16 @@ export class Table {
     const line = make('tr');
     line.tabIndex = 0;
     line.append(cell(row.a, row.name_a), cell(row.b, row.name_b));
-    if (!byId('depth-column').hidden) line.append(make('td', row.depth === undefined ? '' : significant(row.depth), 'number'));
-    if (!byId('state-column').hidden) line.append(make('td', this.stateText(row), row.change ?? ''));
+    if (!byId('depth-column').hidden) line.append(depthCell(row));
+    if (!byId('state-column').hidden) line.append(make('td', this.changeText(row), row.change ?? ''));
     line.addEventListener('click', () => this.actions.open(row));
     line.addEventListener('keydown', event => this.press(event, line, row));
     return line;
   }
 
   // In the first frame, all collisions are new.
-  private stateText(row: Collision): string {
-    return (this.actions.frame() > 0 && row.change) || row.class || '';
+  private changeText(row: Collision): string {
+    return (this.actions.frame() > 0 && row.change) || '';
   }
 
   private press(event: KeyboardEvent, line: HTMLElement, row: Collision): void {
@@ -119,11 +134,25 @@ export class Table {
       if (!line) return;
       const selected = this.isSelected(row);
       line.classList.toggle('marked', selected);
+      // The colours that the two objects have in the picture.
+      for (const [k, object] of [row.a, row.b].entries()) {
+        const which = selected ? this.actions.selected().indexOf(object) : -1;
+        line.children[k]!.className = which < 0 ? '' : which === 0 ? 'first' : 'second';
+      }
       if (selected) line.setAttribute('aria-current', 'true');
       else line.removeAttribute('aria-current');
-      if (selected) line.scrollIntoView({block: 'nearest'});
     });
   }
+}
+
+// The depth, and below it the class.
+function depthCell(row: Collision): HTMLElement {
+  const measure = measureOf(row);
+  const element = make('td', '', 'number');
+  element.append(make('span', measure?.short ?? '', 'measure'));
+  if (measure) element.title = `${measure.kind} ${measure.long}`;
+  if (row.class && row.class !== 'unknown') element.append(make('span', row.class, `class ${classTone(row)}`));
+  return element;
 }
 
 function cell(object: number, name = ''): HTMLElement {

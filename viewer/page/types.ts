@@ -12,6 +12,7 @@ export interface Has {
   groups: boolean;
   shapes: boolean;
   contacts: boolean;
+  classes: boolean;
   events: boolean;
   search: boolean;
   near: boolean;
@@ -61,9 +62,20 @@ export interface Collision {
   name_b?: string;
   class?: string;
   depth?: number;
+  // "least", or "at_least" if the depth is a lower bound; then perhaps with an upper bound.
+  depth_kind?: string;
+  depth_at_most?: number;
   distance?: number;
+  // Of the boxes, if no exact test computed a depth. Negative for a gap.
+  overlap?: number;
   change?: string;
+  // The deepest first.
   contacts?: Contact[];
+  more_contacts?: boolean;
+  // The boxes of both objects, if one of them is not shown.
+  boxes?: [Bounds, Bounds];
+  // Of objects that are apart.
+  nearest?: [Point, Point];
 }
 
 export interface Collisions {
@@ -76,6 +88,8 @@ export interface CollisionQuery {
   count: number;
   sort: string;
   object?: number;
+  // Only pairs of `object` with this one.
+  with?: number;
   q?: string;
 }
 
@@ -145,7 +159,8 @@ export interface SocketEvent {
 
 // Fills in all that an answer may leave out.
 export function completeView(answer: Partial<View>): View {
-  const none: Has = {names: false, groups: false, shapes: false, contacts: false, events: false, search: false, near: false, rows: false, boxes: true};
+  const none: Has = {names: false, groups: false, shapes: false, contacts: false, classes: false, events: false, search: false, near: false, rows: false,
+    boxes: true};
   return {
     version: '', title: '', kind: 'scene', objects: 0, frames: 1, origin: [0, 0, 0], up: '', unit: '', margin: 0, notices: [], summary: {},
     ...answer, shown: answer.shown ?? answer.objects ?? 0,

@@ -10,10 +10,14 @@ export function startWithin(app: App): void {
   if (window.parent === window) return;
   // The report has a table of its own.
   setOpen('side', false);
+  let first = true;
   window.addEventListener('message', event => {
     const objects: unknown = event.data?.select;
     if (event.source !== window.parent || !Array.isArray(objects)) return;
-    void app.selection.select(objects.filter(object => typeof object === 'number')).then(() => app.zoomToSelection());
+    // A report that begins without a chosen row leaves the worst collision selected.
+    if (objects.length === 0 && !first) void app.clearSelection();
+    first = false;
+    if (objects.length) void app.openAll(objects.filter(object => typeof object === 'number'));
   });
   tellReport('ready');
 }

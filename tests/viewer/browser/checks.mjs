@@ -4,7 +4,7 @@ import {readFileSync} from 'node:fs';
 import {accessibility, data, pixel, project, settings} from '../page/browser.mjs';
 
 export const light = {background: [243, 245, 247], free: [176, 188, 200], colliding: [222, 88, 50], began: [240, 176, 40], ended: [42, 157, 143],
-  selected: [28, 110, 235]};
+  selected: [28, 110, 235], second: [240, 140, 20], contact: [190, 0, 70], touching: [118, 156, 196]};
 
 export function text(page, selector) {
   return page.locator(selector).innerText();
@@ -27,6 +27,27 @@ export function topOf(box) {
 // The rows of the table: pairs of indices.
 export function tablePairs(page) {
   return page.evaluate(() => [...document.querySelectorAll('#rows tr')].map(row => [...row.cells].slice(0, 2).map(cell => parseInt(cell.textContent, 10))));
+}
+
+// Sorts the table, and checks that it comes to have these pairs of indices.
+export async function expectTable(page, pairs, sort = 'pair') {
+  await page.selectOption('#sort', sort);
+  await page.waitForFunction(wanted => JSON.stringify([...document.querySelectorAll('#rows tr')]
+    .map(row => [...row.cells].slice(0, 2).map(cell => parseInt(cell.textContent, 10)))) === wanted, JSON.stringify(pairs), {timeout: 10_000})
+    .catch(() => undefined);
+  assert.deepEqual(await tablePairs(page), pairs);
+}
+
+// A number with the digits that the page gives a depth.
+export function depthDigits(value) {
+  const rounded = Number(value.toPrecision(4));
+  return rounded !== 0 && (rounded < 1e-4 || rounded >= 1e7) ? rounded.toExponential() : rounded.toLocaleString('en-US', {maximumFractionDigits: 8});
+}
+
+// The depth of a row as the table shows it: a lower bound does not look like the depth itself.
+export function depthText({depth, depth_kind}) {
+  const known = depth !== undefined && (depth > 0 || depth_kind !== 'at_least');
+  return !known ? '' : `${depth_kind === 'at_least' ? '≥ ' : ''}${depthDigits(depth)}`;
 }
 
 // The rows of a CSV file, without its header.

@@ -10,8 +10,8 @@ function element(address, answer) {
 function addresses(view) {
   const list = ['timeline.json', 'groups.u32', 'names.json', 'geometry.u32', 'shapes.json', 'shape/0', 'shape/1', 'shape/2'];
   for (let f = 0; f < view.frames; ++f) {
-    list.push(`frame/${f}.json`, `frame/${f}.f32`, `poses/${f}.f32`, `partners/${f}.u32`, `levels/${f}.u8`, `pairs/${f}.u32`, `began/${f}.u32`,
-      `ended/${f}.u32`, `octants/${f}.json`, `collisions/${f}.json`);
+    list.push(`frame/${f}.json`, `frame/${f}.f32`, `poses/${f}.f32`, `partners/${f}.u32`, `classes/${f}.u8`, `levels/${f}.u8`, `pairs/${f}.u32`,
+      `began/${f}.u32`,      `ended/${f}.u32`, `octants/${f}.json`, `collisions/${f}.json`);
     for (let level = 0; level < 4; ++level) list.push(`octants/${f}/${level}.bin`);
   }
   return list.filter(address => view.has.shapes || !/^(geometry|shape|poses)/.test(address));

@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
-import {checkAccessibility, checkKeys, colourAt, complete, light, text} from '../browser/checks.mjs';
+import {checkAccessibility, checkKeys, colourAt, complete, depthDigits, light, near, tablePairs, text, waitForText} from '../browser/checks.mjs';
 import {accessibility, clickAt, data, launch, open, pixel, project, ready, runTests, settings, viewerFolder, waitForData} from './browser.mjs';
 import {exportPage} from './export.mjs';
 
@@ -15,8 +15,25 @@ const {values: options} = parseArgs({options: {
 }});
 const {startMock} = await import(pathToFileURL(join(viewerFolder, 'mock_server.mjs')));
 
+// The hash of a page with nothing selected. Without a hash, the page begins with the worst collision.
+const whole = '#selected=';
 const tests = [];
 const test = (name, scene, objects, run, context = {}) => tests.push({name, scene, objects, run, context});
+
+// The worst collision, as the mock sorts them.
+function worstOf(scene) {
+  return scene.collisions(0, new URLSearchParams({sort: 'worst'})).rows[0];
+}
+
+// Whether a section through this pixel has the colour of what both objects have in common, beside the mark of the contact.
+async function isCommon(page, at) {
+  const beside = [[1, 1], [-1, 1], [1, -1], [-1, -1]].map(([x, y]) => pixel(page, {x: at.x + 9 * x, y: at.y + 9 * y}));
+  return (await Promise.all(beside)).some(colour => near(colour, light.contact));
+}
+
+async function distance(page) {
+  return Number((await page.evaluate(() => window.octopairView.camera())).split('_')[3]);
+}
 
 // The middle of the box of an object that is drawn in front, from the mock's first frame.
 function middleOf(scene, k) {
@@ -152,10 +169,19 @@ test('the table sorts, filters and selects', 'static', 1000, async ({page, scene
   assert.match(await text(page, '#table-totals'), new RegExp(`^1 to 100 of ${total} collisions$`));
   await page.click('#next-page');
   await page.waitForFunction(() => document.getElementById('table-totals').textContent.startsWith('101 to'));
-  await page.selectOption('#sort', 'depth');
+  // Overlapping pairs are before touching ones, and the deepest first.
+  const worst = scene.collisions(0, new URLSearchParams({sort: 'worst'})).rows;
+  const pairsOf = rows => rows.map(({a, b}) => [a, b]);
+  assert.deepEqual(await tablePairs(page), pairsOf(worst.slice(100, 200)));
+  await page.selectOption('#sort', 'pair');
   await page.waitForFunction(() => document.getElementById('table-totals').textContent.startsWith('1 to'));
-  const depths = await page.locator('#rows td.number').allInnerTexts();
-  assert.ok(Number(depths[0]) >= Number(depths[1]));
+  assert.deepEqual(await tablePairs(page), scene.frame(0).pairs.slice(0, 100));
+  await page.selectOption('#sort', 'worst');
+  await page.waitForFunction(a => parseInt(document.querySelector('#rows td').textContent, 10) === a, worst[0].a);
+  assert.deepEqual(await tablePairs(page), pairsOf(worst.slice(0, 100)));
+  // A lower bound does not look like the depth itself.
+  const shown = await page.locator('#rows .measure').allInnerTexts();
+  assert.deepEqual(shown, worst.slice(0, 100).map(row => `${row.depth_kind === 'at_least' ? '≥ ' : ''}${depthDigits(row.depth)}`));
   const before = await page.evaluate(() => window.octopairView.camera());
   await page.locator('#rows tr').nth(2).click();
   await page.waitForFunction(() => document.documentElement.dataset.selected.includes(','));
@@ -463,6 +489,116 @@ test('progress while loading', 'loading', 10, async ({page}) => {
   assert.equal(await data(page, 'drawn'), '10');
 });
 
+test('the first picture shows the worst collision', 'static', 300, async ({page, scene}) => {
+  const worst = worstOf(scene);
+  await complete(page);
+  assert.equal(await data(page, 'selected'), `${worst.a},${worst.b}`);
+  assert.equal(await data(page, 'contacts'), '1');
+  assert.equal(await page.locator('#rows tr[aria-current]').count(), 1);
+  assert.match(await text(page, '#legend'), new RegExp(`plate ${worst.a}\\n.*plate ${worst.b}\\nother objects`));
+  // The depth of the pair, which is not that of its contact.
+  const bound = worst.depth_kind === 'at_least';
+  assert.equal(await text(page, '#depths'), `depth ${bound ? '≥ ' : ''}${depthDigits(worst.depth)} m`);
+  assert.match(await text(page, '#selection'), new RegExp(`Penetrating[^]*depth\\s+${bound ? 'at least ' : ''}${depthDigits(worst.depth)} m`));
+  assert.deepEqual(await accessibility(page), []);
+  await page.click('#selection summary');
+  assert.match(await text(page, '#selection details'), new RegExp(`own depth[^]*\\s${depthDigits(0.5 * worst.depth)}$`));
+  // The contact is in the middle of what the panel of settings leaves free, and the small picture shows where that is.
+  const at = await project(page, worst.contacts[0].point);
+  const stage = await page.locator('#stage').boundingBox();
+  assert.ok(Math.abs(at.x - (stage.x + 0.5 * (stage.width + 248))) < 60 && Math.abs(at.y - (stage.y + 0.5 * stage.height)) < 60);
+  assert.ok(await page.locator('#overview').isVisible());
+  // In a section, what both boxes have in common has a colour of its own.
+  await page.keyboard.press('j');
+  await waitForData(page, 'drawn', '2');
+  await page.keyboard.press('x');
+  assert.equal((await settings(page)).section, 'contact');
+  assert.ok(await isCommon(page, at));
+  assert.match(await text(page, '#legend'), /\nin both$/);
+  await page.click('#selection button:text("Section")');
+  assert.equal((await settings(page)).section, 'none');
+  assert.doesNotMatch(await text(page, '#legend'), /in both/);
+  // All objects, in the colours of their classes.
+  await page.click('#selection button:text("Only these two")');
+  const close = await distance(page);
+  await page.keyboard.press('Escape');
+  await waitForData(page, 'selected', '');
+  assert.ok(await distance(page) > 2 * close);
+  assert.match(await text(page, '#legend'), /^not colliding\s+touching\s+penetrating$/);
+  assert.ok(await page.locator('#overview').isHidden());
+}, {hash: ''});
+
+test('objects of a pair have two colours, and others are ghosts', 'static', 40, async ({page, scene, address, browser}) => {
+  const {a, b} = worstOf(scene);
+  const {boxes, pairs} = scene.frame(0);
+  const top = k => [0, 1, 2].map(axis => 1000 * (axis + 1) + (axis === 2 ? boxes[6 * k + 5] : 0.5 * (boxes[6 * k + axis] + boxes[6 * k + axis + 3])));
+  const seen = async k => pixel(page, await project(page, top(k)));
+  await complete(page);
+  await page.keyboard.press('h');
+  // One of the two may be glass, since it would hide the other.
+  assert.ok(near(await seen(a), light.selected) || near(await seen(b), light.second));
+  const others = [...new Set(pairs.flat())].filter(k => k !== a && k !== b);
+  const grey = colour => Math.max(...colour) - Math.min(...colour) < 40 && Math.min(...colour) > 120;
+  const colours = await Promise.all(others.map(seen));
+  assert.ok(colours.filter(grey).length >= others.length - 1, colours.join(' '));
+  // Solid, they have the colours of their states.
+  const solid = await open(browser, `${address}#selected=${a},${b}&ghosts=0`);
+  await complete(solid.page);
+  assert.match(await text(solid.page, '#legend'), /not colliding[^]*penetrating/);
+  await solid.close();
+}, {hash: ''});
+
+test('a row and a link zoom to the contact', 'hall', 60, async ({page, scene, address, browser}) => {
+  // One of the two objects is as large as the scene.
+  const whole = await distance(page);
+  await page.locator('#rows tr').nth(1).click();
+  await page.waitForFunction(() => document.documentElement.dataset.selected.startsWith('0,'));
+  assert.ok(await distance(page) < 0.5 * whole);
+  await page.keyboard.press('h');
+  assert.ok(await distance(page) > 0.9 * whole);
+  await page.keyboard.press('f');
+  assert.ok(await distance(page) < 0.5 * whole);
+  const {a, b} = worstOf(scene);
+  const other = await open(browser, `${address}#selected=${a},${b}`);
+  await complete(other.page);
+  assert.equal(await data(other.page, 'selected'), `${a},${b}`);
+  assert.ok(await distance(other.page) < 0.5 * whole);
+  await other.close();
+});
+
+test('the worst collision of a large scene', 'near', 4000, async ({page, scene}) => {
+  const {a, b, boxes: [first, second]} = scene.collisions(0, new URLSearchParams({sort: 'worst'})).rows[0];
+  await complete(page);
+  assert.equal(await data(page, 'selected'), `${a},${b}`);
+  assert.match(await text(page, '#notices'), /more boxes near the target/);
+  // A section shows what both boxes have in common, around its middle.
+  await page.keyboard.press('x');
+  const middle = [0, 1, 2].map(k => 0.5 * (Math.max(first.min[k], second.min[k]) + Math.min(first.max[k], second.max[k])));
+  const at = await project(page, middle);
+  assert.ok(await isCommon(page, at), String(await pixel(page, at)));
+}, {hash: ''});
+
+test('a live scene begins with the worst collision, and keeps what was selected', 'live', 200, async ({page, scene}) => {
+  // The first answer has no collisions yet.
+  let answers = 0;
+  await page.route('**/collisions/*.json*', route => answers++ === 0 ? route.fulfill({json: {total: 0, rows: []}}) : route.continue());
+  await page.reload();
+  await complete(page);
+  await page.waitForFunction(() => document.documentElement.dataset.selected?.includes(','));
+  assert.ok(answers > 1);
+  assert.equal(await data(page, 'drawn'), String(scene.n));
+  assert.equal((await settings(page)).ghosts, false);
+  // The rows that come later do not select anything again.
+  await page.keyboard.press('Escape');
+  await waitForData(page, 'selected', '');
+  for (const known of [answers, answers + 1]) {
+    await page.waitForResponse(/collisions/);
+    assert.ok(answers > known);
+    await pictures(page, 2);
+    assert.equal(await data(page, 'selected'), '');
+  }
+}, {hash: ''});
+
 test('the first frame does not flatten the plot', 'moving', 2000, async ({page, scene}) => {
   await complete(page);
   const {pairs: totals, began, ended} = scene.timeline();
@@ -473,6 +609,12 @@ test('the first frame does not flatten the plot', 'moving', 2000, async ({page, 
   const [low, high] = [Math.min(...totals), Math.max(...totals)];
   assert.ok(pairs[0] <= low && pairs[1] >= high && pairs[1] - pairs[0] < 1.3 * Math.max(high - low, 0.1 * high), `${pairs} for ${low} to ${high}`);
 });
+
+test('no collision', 'static', 1, async ({page}) => {
+  await complete(page);
+  assert.equal(await data(page, 'selected'), '');
+  await waitForText(page, '#no-rows', /No objects collide/);
+}, {hash: ''});
 
 for (const colorScheme of ['light', 'dark']) {
   for (const viewport of [{width: 1280, height: 720}, {width: 390, height: 844}]) {
@@ -491,8 +633,11 @@ async function testExport(browser) {
   exportPage(mock.scene, options.page, file);
   const {page, errors, close} = await open(browser, pathToFileURL(file).href);
   try {
-    await ready(page);
-    assert.equal(await data(page, 'drawn'), '80');
+    await complete(page);
+    const worst = worstOf(mock.scene);
+    assert.equal(await data(page, 'selected'), `${worst.a},${worst.b}`);
+    await page.keyboard.press('Escape');
+    await waitForData(page, 'drawn', '80');
     await page.locator('#rows tr').first().waitFor();
     await page.locator('#rows tr').first().click();
     await page.waitForFunction(() => document.documentElement.dataset.selected.includes(','));
@@ -514,8 +659,8 @@ async function testExport(browser) {
 
 async function testMock(browser, {scene, objects, run, context}) {
   const mock = await startMock({scene, objects, page: options.page});
-  const {expected, ...view} = context;
-  const {page, errors, close} = await open(browser, mock.address, view);
+  const {expected, hash = whole, ...view} = context;
+  const {page, errors, close} = await open(browser, mock.address + hash, view);
   try {
     if (scene !== 'failed') await ready(page);
     await run({page, scene: mock.scene, address: mock.address, browser, stop: mock.stop});

@@ -1,0 +1,44 @@
+// The small picture of the whole scene that says where the selected pair is. A click zooms to all objects.
+import {type Colour, css} from './colours.ts';
+import {byId, later} from './dom.ts';
+import type {Focus} from './focus.ts';
+import type {Stage} from './stage.ts';
+
+export interface Place {
+  focus: Focus;
+  view: {yaw: number; pitch: number};
+  colour: Colour;
+}
+
+export class Overview {
+  private readonly drawSoon = later(() => this.draw(), 200);
+  private readonly host = byId('overview');
+  private readonly canvas = byId<HTMLCanvasElement>('overview-canvas');
+
+  constructor(private readonly stage: Stage, private readonly place: () => Place | null, zoomAll: () => void) {
+    this.host.addEventListener('click', zoomAll);
+  }
+
+  // Draws soon, but not for each frame of a scene that plays.
+  changed(): void {
+    if (!this.place()) this.host.hidden = true;
+    this.drawSoon();
+  }
+
+  draw(): void {
+    const place = this.place();
+    this.host.hidden = place === null;
+    if (!place) return;
+    const [x, y] = this.stage.drawOverview(this.canvas, {yaw: place.view.yaw, pitch: 0.5}, place.focus.mark);
+    const context = this.canvas.getContext('2d')!;
+    const ratio = this.canvas.width / this.canvas.clientWidth;
+    for (const [width, colour] of [[4.5, 'white'], [2.5, css(place.colour)]] as const) {
+      context.beginPath();
+      context.arc(x, y, 9 * ratio, 0, 2 * Math.PI);
+      context.lineWidth = width * ratio;
+      context.strokeStyle = colour;
+      context.stroke();
+    }
+    this.stage.invalidate();
+  }
+}
