@@ -175,7 +175,6 @@ std::vector<std::size_t> true_rows(const Shown& scene, const RowRequest& request
         return rows;
     }
     const auto key = [&](std::size_t i) {
-        if (request.sort == RowRequest::Sort::depth) return -scene.data.findings[i].depth;
         const bool began = std::count(scene.began.begin(), scene.began.end(), scene.data.pairs[i]) > 0;
         return request.sort == RowRequest::Sort::began && !began ? 1.0 : 0.0;
     };
@@ -232,7 +231,7 @@ TEST(CollisionTable, SelectsAndSorts) {
     for (int round = 0; round < 5; ++round) {
         Shown scene(random, 150, 100);
         describe(scene, random);
-        for (const std::string sort : {"", "&sort=pair", "&sort=worst", "&sort=depth", "&sort=began"}) {
+        for (const std::string sort : {"", "&sort=pair", "&sort=worst", "&sort=began"}) {
             for (const std::string filter :
                  {"", "&q=hull", "&q=PLATE+1", "&q=7", "&q=nothing", "&object=7", "&object=149", "&object=150",
                   "&object=99999999999", "&object=3&q=beam", "&object=3&with=7", "&with=7", "&object=7&with=3"}) {
@@ -311,7 +310,7 @@ TEST(CollisionTable, GivesAtMostAThousandRows) {
 
 TEST(CollisionTable, RefusesInvalidParameters) {
     for (const std::string query : {"?from=-1", "?from=a", "?count=1.5", "?count=%20", "?object=x", "?object=-1",
-                                    "?sort=size", "?sort=Depth", "?with=x", "?from=99999999999999999999"}) {
+                                    "?sort=size", "?sort=depth", "?with=x", "?from=99999999999999999999"}) {
         (void)error_of(ErrorCode::bad_input, [&] { viewer::row_request(address_of(query)); });
     }
 }

@@ -109,14 +109,10 @@ private:
         return kept;
     }
 
-    /// Sorts the first `count` rows; the others are left in any order.
+    /// Puts the first `count` rows into their order. The others are left in any order, or dropped.
     void sort(std::vector<std::uint32_t>& rows, RowRequest::Sort order, std::size_t count) const {
-        const auto& findings = frame_.data.findings;
         if (order == RowRequest::Sort::worst) {
             keep_worst(rows, count);
-        } else if (order == RowRequest::Sort::depth && !findings.empty()) {
-            std::stable_sort(rows.begin(), rows.end(),
-                             [&](auto a, auto b) { return findings[a].depth > findings[b].depth; });
         } else if (order == RowRequest::Sort::began) {
             std::stable_partition(rows.begin(), rows.end(), [&](auto i) { return has_begun(frame_.data.pairs[i]); });
         }
@@ -211,12 +207,10 @@ RowRequest row_request(const Address& address) {
     const std::string_view sort = address.parameter("sort");
     if (sort == "worst") {
         request.sort = RowRequest::Sort::worst;
-    } else if (sort == "depth") {
-        request.sort = RowRequest::Sort::depth;
     } else if (sort == "began") {
         request.sort = RowRequest::Sort::began;
     } else if (!sort.empty() && sort != "pair") {
-        throw Error(ErrorCode::bad_input, "sort: worst, pair, depth or began");
+        throw Error(ErrorCode::bad_input, "sort: worst, pair or began");
     }
     return request;
 }

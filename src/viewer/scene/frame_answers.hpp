@@ -74,7 +74,6 @@ struct RowRequest {
     enum class Sort : std::uint8_t {
         pair,
         worst,  ///< by class, penetrating first, and in a class deepest first; boxes without depths by their overlap
-        depth,
         began
     } sort = Sort::pair;
     std::optional<std::uint32_t> object, with;  ///< only pairs with this object, or with both
