@@ -3,10 +3,11 @@
 #
 #     wheel.sh SOURCE_DIR PYTHON
 #
-#   1. makes a source distribution, unpacks it, and builds the wheel from it with pip in a virtual environment
-#   2. installs the wheel alone in a fresh environment
-#   3. checks that each module and program links only libraries of the wheel, the C library, and MPI
-#   4. runs examples with each engine, and the command octopair
+#   1. makes a source distribution, unpacks it, and builds the wheel from it with pip
+#   2. checks that the build has the options of build/release, uses ccache, and shows its progress in a pipe and on a terminal
+#   3. installs the wheel alone in a fresh environment
+#   4. checks that each module and program links only libraries of the wheel, the C library, and MPI
+#   5. runs examples with each engine, and the command octopair
 set -euo pipefail
 source_dir=$1 python=$2
 work=$(mktemp -d)
@@ -15,22 +16,37 @@ fail() {
     echo "wheel.sh: $*" >&2
     exit 1
 }
-unset PYTHONPATH OCTOPAIR_WORKER OCTOPAIR_PROGRAM
+unset PYTHONPATH CXXFLAGS OCTOPAIR_WORKER OCTOPAIR_PROGRAM
 
 cd "$source_dir"
 "$python" setup.py -q egg_info --egg-base "$work" sdist --dist-dir "$work" > "$work/log" 2>&1 || { cat "$work/log"; fail "no source distribution"; }
 tar -xf "$work"/octopair-*.tar.gz -C "$work"
 rm "$work"/octopair-*.tar.gz
 cd "$work"/octopair-*
-# The build takes the objects of the preset `release` from ccache, because its folder is as deep as those of the presets, and its
-# options are the same (tests/packaging/release_objects.sh).
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 SKBUILD_CONFIGURE_OPTIONS=-DOCTOPAIR_WARNINGS_AS_ERRORS=ON \
-    CXXFLAGS="-g -fno-var-tracking" LDFLAGS=-s
-folder=$("$python" -c 'from skbuild.constants import CMAKE_BUILD_DIR; print(CMAKE_BUILD_DIR())')
-mkdir -p build/wheel "$(dirname "$folder")"
-ln -s "$PWD/build/wheel" "$folder"
+# The build takes the objects of the preset `release` from ccache, because it has the options of build/release, and its folder is as deep.
+# These are the options with which the stages of tests build (tests/packaging/release_objects.sh).
+mkdir -p build/release
+echo "CMAKE_CXX_FLAGS:STRING=-g -fno-var-tracking
+OCTOPAIR_WARNINGS_AS_ERRORS:BOOL=ON" > build/release/CMakeCache.txt
+export LDFLAGS=-s CCACHE_STATSLOG=$work/ccache
 "$python" -m venv --system-site-packages "$work/build"
-"$work/build/bin/pip" wheel --no-deps --no-build-isolation --wheel-dir "$work/wheel" . > "$work/log" 2>&1 || { tail -40 "$work/log"; fail "no wheel"; }
+build=("$work/build/bin/pip" wheel --no-deps --no-build-isolation --wheel-dir)
+"${build[@]}" "$work/wheel" . 2>&1 < /dev/null | cat > "$work/log" || { tail -40 "$work/log"; fail "no wheel"; }
+grep -qE 'octopair: compiling [0-9]+0 of [0-9]+$' "$work/log" || { cat "$work/log"; fail "pip showed no progress in a pipe"; }
+while read -r option; do
+    grep -qxF -e "$option" build/wheel/CMakeCache.txt || fail "the build of the wheel does not have $option, as build/release"
+done < build/release/CMakeCache.txt
+
+# A second build compiles only what changed, and ccache has the object.
+touch python/src/octants.cpp
+: > "$CCACHE_STATSLOG"
+script -qefc "${build[*]} '$work/later' ." /dev/null < /dev/null > "$work/log" 2>&1 || { tail -40 "$work/log"; fail "no second wheel"; }
+grep -aqE ' compiling [0-9]+ of [0-9]+ ' "$work/log" || { cat "$work/log"; fail "pip showed no progress on a terminal"; }
+if command -v ccache > /dev/null; then
+    sed -n '/^# .*octopair_python_core/,/^#/p' "$CCACHE_STATSLOG" | grep '_cache_hit$' > "$work/hits" ||
+        fail "the second build did not take its object from ccache"
+    [ "$(grep -cE '^# (.*/)?(src|python)/' "$CCACHE_STATSLOG")" = 1 ] || fail "the second build compiled again: $(grep '^#' "$CCACHE_STATSLOG")"
+fi
 cd "$work"
 rm -rf "$work"/octopair-*
 
