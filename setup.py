@@ -9,8 +9,10 @@ With ccache, the build takes objects that the same compiler commands made before
 build/release, if that exists.
 """
 import contextlib
+import functools
 import os
 import pathlib
+import platform
 import re
 import shlex
 import shutil
@@ -21,9 +23,22 @@ import sys
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
+try:
+    from setuptools.command.bdist_wheel import bdist_wheel
+except ImportError:  # setuptools before 70.1
+    try:
+        from wheel.bdist_wheel import bdist_wheel
+    except ImportError:
+        raise SystemExit("setup.py: the Python package wheel is missing; on Debian, run scripts/setup python, and make the virtual "
+                         "environment with --system-site-packages") from None
+
 ROOT = pathlib.Path(__file__).resolve().parent
 BUILD = ROOT / "build/wheel"
 VERSION = re.search(r"^project\(octopair VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)[1]
+
+OLDEST_SYSTEMS = {"GLIBC": (2, 35), "GLIBCXX": (3, 4, 30), "CXXABI": (1, 3, 13), "GCC": (12, 0, 0)}
+"""Versions of symbols that the C and C++ libraries of Ubuntu 22.04 and Debian 12 have. A wheel that needs no later ones has the tag
+manylinux_2_35."""
 
 
 class Progress:
@@ -135,6 +150,33 @@ class BuildWithCMake(build_ext):
         run(["cmake", "--install", str(BUILD), "--component", "python", "--strip", "--prefix", str(prefix.resolve())], progress)
 
 
+def needed_versions(file):
+    """Returns the versions of symbols that a program or library needs, as pairs of a name and numbers."""
+    shown = subprocess.run(["readelf", "--version-info", "--wide", str(file)], capture_output=True, text=True, check=True).stdout
+    shown = shown.replace("GLIBC_ABI_DT_RELR", "GLIBC_2.36")  # relocations that glibc reads since this version
+    found = re.findall(rf"\b({'|'.join(OLDEST_SYSTEMS)})_([\d.]+)", shown)
+    return {(name, tuple(map(int, version.split(".")))) for name, version in found}
+
+
+class Wheel(bdist_wheel):
+    """Names the oldest systems in the tag of the wheel, as PEP 600 says, if the wheel runs on these."""
+
+    @functools.cache
+    def get_tag(self):
+        python, abi, system = super().get_tag()
+        package = pathlib.Path(self.get_finalized_command("build").build_lib) / "octopair"
+        files = [file for file in package.rglob("*") if file.is_file() and file.read_bytes()[:4] == b"\x7fELF"]
+        needed = [(name, version, file.name) for file in files for name, version in sorted(needed_versions(file))]
+        later = [row for row in needed if row[1] > OLDEST_SYSTEMS[row[0]]]
+        for name, version, file in later:
+            print(f"setup.py: {file} needs {name}_{'.'.join(map(str, version))}, so the wheel is for systems like this one only")
+        # On a system with an earlier glibc, pip would refuse the tag, although the system built the wheel.
+        c_library, version = platform.libc_ver()
+        if c_library == "glibc" and tuple(map(int, version.split("."))) >= OLDEST_SYSTEMS["GLIBC"] and not later:
+            system = re.sub("^linux_", "manylinux_2_35_", system)
+        return python, abi, system
+
+
 setup(
     version=VERSION,
     packages=["octopair"],
@@ -143,6 +185,6 @@ setup(
     include_package_data=False,
     zip_safe=False,
     ext_modules=[Extension("octopair._core", [])],
-    cmdclass={"build_ext": BuildWithCMake},
+    cmdclass={"build_ext": BuildWithCMake, "bdist_wheel": Wheel},
     options={"build": {"build_base": str(BUILD / "setuptools")}},
 )

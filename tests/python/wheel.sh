@@ -6,8 +6,9 @@
 #   1. makes a source distribution, unpacks it, and builds the wheel from it with pip
 #   2. checks that the build has the options of build/release, uses ccache, and shows its progress in a pipe and on a terminal
 #   3. installs the wheel alone in a fresh environment
-#   4. checks that each module and program links only libraries of the wheel, the C library, and MPI
-#   5. runs examples with each engine, and the command octopair
+#   4. checks that the modules and programs link only libraries of the wheel, the C and C++ libraries, and MPI
+#   5. checks that each file needs only versions of the C and C++ libraries that the oldest systems have, which the wheel names
+#   6. runs examples with each engine, and the command octopair
 set -euo pipefail
 source_dir=$1 python=$2
 work=$(mktemp -d)
@@ -37,8 +38,10 @@ while read -r option; do
     grep -qxF -e "$option" build/wheel/CMakeCache.txt || fail "the build of the wheel does not have $option, as build/release"
 done < build/release/CMakeCache.txt
 
-# A second build compiles only what changed, and ccache has the object.
+# A second build compiles only what changed, and ccache has the object. If glibc 2.2 is the oldest, all files need a later version, so the
+# wheel names no oldest system.
 touch python/src/octants.cpp
+sed -i 's/"GLIBC": (2, 35)/"GLIBC": (2, 2)/' setup.py
 : > "$CCACHE_STATSLOG"
 script -qefc "${build[*]} '$work/later' ." /dev/null < /dev/null > "$work/log" 2>&1 || { tail -40 "$work/log"; fail "no second wheel"; }
 grep -aqE ' compiling [0-9]+ of [0-9]+ ' "$work/log" || { cat "$work/log"; fail "pip showed no progress on a terminal"; }
@@ -47,6 +50,7 @@ if command -v ccache > /dev/null; then
         fail "the second build did not take its object from ccache"
     [ "$(grep -cE '^# (.*/)?(src|python)/' "$CCACHE_STATSLOG")" = 1 ] || fail "the second build compiled again: $(grep '^#' "$CCACHE_STATSLOG")"
 fi
+[[ $(echo "$work"/later/*.whl) == *-linux_$(uname -m).whl ]] || fail "the wheel for later systems is $(ls "$work/later")"
 cd "$work"
 rm -rf "$work"/octopair-*
 
@@ -55,12 +59,34 @@ rm -rf "$work"/octopair-*
 package=$("$work/fresh/bin/python" -c 'import octopair, pathlib; print(pathlib.Path(octopair.__file__).parent)')
 [[ $package == "$work"/fresh/* ]] || fail "imported $package"
 
-system='^(linux-vdso|/lib64/ld-linux|libc\.|libm\.|libdl\.|librt\.|libpthread\.|libresolv\.)'
-for file in "$package"/_core*.so "$package"/_remote*.so "$package"/bin/*; do
+# All programs, modules and libraries of the wheel.
+mapfile -t files < <(find "$package" -type f -exec sh -c 'head -c 4 "$1" | grep -aq ELF' sh {} \; -print)
+[ ${#files[@]} -gt 20 ] || fail "few programs and libraries: ${files[*]}"
+system='^(linux-vdso|/lib64/ld-linux|libc\.|libm\.|libdl\.|librt\.|libpthread\.|libresolv\.|libstdc\+\+\.|libgcc_s\.)'
+for file in "${files[@]}"; do
+    # Ranks run with the MPI of the system, so its module links that. A module or program says where the libraries of a library are.
+    [[ $file != */_mpi.* && $file != */lib/* ]] || continue
     others=$(ldd "$file" | awk '{ print $1, $3 }' | grep -v "$package" | grep -Ev "$system" || true)
     [ -z "$others" ] || fail "$(basename "$file") links libraries that the wheel does not contain: $others"
 done
 if compgen -G "$package/lib/libmpi*" > /dev/null; then fail "the wheel contains MPI"; fi
+
+# The wheel names the oldest systems in its tag and its description. These are the versions of symbols that they have.
+for file in "${files[@]}"; do
+    readelf --version-info --wide "$file" | awk -v file="${file#"$package/"}" '/^Version / { needs = /needs/ }
+        needs && match($0, /Name: [^ ]+/) { print substr($0, RSTART + 6, RLENGTH - 6), file }'
+done > "$work/needed"
+for oldest in GLIBC_2.35 GLIBCXX_3.4.30 CXXABI_1.3.13 GCC_12.0.0; do
+    grep "^${oldest%%_*}_" "$work/needed" | sort -V > "$work/versions" || fail "no file needs a version of ${oldest%%_*}"
+    highest=$(tail -1 "$work/versions")
+    [ "$(printf '%s\n' "${highest% *}" "$oldest" | sort -V | tail -1)" = "$oldest" ] ||
+        fail "the oldest systems have $oldest, but these files need a later version: $(grep "^${highest% *} " "$work/versions")"
+done
+[[ $(echo "$work"/wheel/*.whl) == *-manylinux_2_35_$(uname -m).whl ]] || fail "the wheel is $(ls "$work/wheel")"
+tr '\n' ' ' < "$(echo "$package"/../octopair-*.dist-info/METADATA)" > "$work/description"
+for words in "glibc 2.35" GLIBCXX_3.4.30 CXXABI_1.3.13 "Ubuntu 22.04" "Debian 12"; do
+    grep -qF "$words" "$work/description" || fail "the description of the wheel does not name $words"
+done
 
 "$work/fresh/bin/python" - << 'END'
 import numpy as np, octopair as op, octopair.trimesh
@@ -70,6 +96,16 @@ assert len(expected) > 1000
 assert op.Engine("processes", workers=2).find_pairs(boxes).tobytes() == expected.tobytes()
 np.save("boxes.npy", boxes)
 assert op.detect("boxes.npy").pairs.tobytes() == expected.tobytes()
+import zipfile
+model = ('<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1"><mesh><vertices>'
+         '<vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1"/></vertices><triangles>'
+         '<triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3"/><triangle v1="0" v2="3" v3="2"/><triangle v1="1" v2="2" v3="3"/>'
+         '</triangles></mesh></object></resources><build><item objectid="1"/><item objectid="1"/></build></model>')
+with zipfile.ZipFile("parts.3mf", "w") as file:  # XML: the wheel has an expat of its own
+    file.writestr("_rels/.rels", '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="a" '
+                  'Target="/a.model" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+    file.writestr("a.model", model)
+assert op.detect("parts.3mf").pairs.tolist() == [[0, 1]]
 import importlib.util
 if importlib.util.find_spec("octopair._remote"):
     import os, subprocess, time
