@@ -148,6 +148,17 @@ public:
     void nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
                  std::uint32_t groups = all_groups);
 
+    /// The same with a stop token, for many queries.
+    /// Throws: also Error{cancelled} within 200 ms after a stop request, unless the answers are ready before. `answers` is then unspecified.
+    void overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups,
+                  std::stop_token stop);
+    void overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups,
+                  std::stop_token stop);
+    void first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups, std::stop_token stop);
+    void all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups, std::stop_token stop);
+    void nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
+                 std::uint32_t groups, std::stop_token stop);
+
     /// Return the answers to a query with one box, sphere, ray or place.
     std::vector<std::uint32_t> overlaps(const Box3d& box, std::uint32_t groups = all_groups);
     std::vector<std::uint32_t> overlaps(const Sphere& sphere, std::uint32_t groups = all_groups);

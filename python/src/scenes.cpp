@@ -2,14 +2,11 @@
 #include "scenes.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <variant>
 
 #include "bindings.hpp"
-#include "octopair/error.hpp"
 
 namespace octopair::python {
 
@@ -36,18 +33,6 @@ py::tuple columns_of(const Answers<Answer>& answers, double Answer::*number) {
     return py::make_tuple(indices, numbers, offsets_of(answers.ends));
 }
 
-/// Throws the error of a batch with the number of the query in all queries. Requires: called in a catch block.
-[[noreturn]] void throw_renumbered(const Error& error, std::size_t begin) {
-    std::optional<ErrorPlace> place = error.place();
-    if (begin == 0 || !place) throw;
-    const std::string in_batch = "query " + std::to_string(place->index);
-    place->index += begin;
-    std::string text = error.what();
-    const std::size_t at = text.find(in_batch);
-    if (at != std::string::npos) text.replace(at, in_batch.size(), "query " + std::to_string(place->index));
-    throw PlacedError(error.code(), text, *place);
-}
-
 class LocalScene : public PythonScene<Scene> {
 public:
     using PythonScene::PythonScene;
@@ -60,25 +45,30 @@ public:
     }
     /// Queries: boxes (n, 6), spheres (n, 4: centre and radius), rays (n, 7: origin, direction, longest), all float64.
     py::tuple overlaps(const py::array& queries, std::uint32_t groups) {
-        const auto find = [&](auto rows, auto& answers) { scene().overlaps(rows, answers, groups); };
-        Answers<std::uint32_t> answers = queries.shape(1) == 4
-                                             ? in_batches<std::uint32_t>(rows_of<Sphere, double>(queries), find)
-                                             : in_batches<std::uint32_t>(rows_of<Box3d, double>(queries), find);
+        const auto find = [&](auto rows) {
+            return answers_of<std::uint32_t>(
+                [&](const std::stop_token& stop, auto& answers) { scene().overlaps(rows, answers, groups, stop); });
+        };
+        Answers<std::uint32_t> answers =
+            queries.shape(1) == 4 ? find(rows_of<Sphere, double>(queries)) : find(rows_of<Box3d, double>(queries));
         const py::array offsets = offsets_of(answers.ends);
         return py::make_tuple(array_of<std::uint32_t>(std::move(answers.all)), offsets);
     }
     py::tuple hits(const py::array& rays, bool all, std::uint32_t groups) {
-        const auto find = [&](std::span<const Ray> rows, Answers<RayHit>& answers) {
-            return all ? scene().all_hits(rows, answers, groups) : scene().first_hits(rows, answers, groups);
+        const auto rows = rows_of<Ray, double>(rays);
+        const auto find = [&](const std::stop_token& stop, Answers<RayHit>& answers) {
+            return all ? scene().all_hits(rows, answers, groups, stop)
+                       : scene().first_hits(rows, answers, groups, stop);
         };
-        return columns_of(in_batches<RayHit>(rows_of<Ray, double>(rays), find), &RayHit::along);
+        return columns_of(answers_of<RayHit>(find), &RayHit::along);
     }
     py::tuple nearest(const py::array& places, const py::tuple& limits, std::uint32_t groups) {
+        const auto rows = rows_of<Box3d, double>(places);
         const NearestLimits most{limits[0].cast<std::size_t>(), limits[1].cast<double>()};
-        const auto find = [&](std::span<const Box3d> rows, Answers<Neighbor>& answers) {
-            scene().nearest(rows, most, answers, groups);
+        const auto find = [&](const std::stop_token& stop, Answers<Neighbor>& answers) {
+            scene().nearest(rows, most, answers, groups, stop);
         };
-        return columns_of(in_batches<Neighbor>(rows_of<Box3d, double>(places), find), &Neighbor::distance);
+        return columns_of(answers_of<Neighbor>(find), &Neighbor::distance);
     }
 
     /// Returns (boxes, exists): a copy of the boxes by index, and whether there is an object at each index.
@@ -105,32 +95,12 @@ private:
         return array;
     }
 
-    /// Finds the answers to all queries. Signal handlers run after each batch of queries, which takes about 20 to 80 ms. The scene sorts
-    /// the queries of a batch by place, so large batches are faster.
-    template <typename Answer, typename Query, typename Find>
-    Answers<Answer> in_batches(std::span<const Query> queries, Find find) {
-        using Clock = std::chrono::steady_clock;
-        std::size_t batch_size = 1;
-        Answers<Answer> all, part;
-        std::size_t end = 0;
-        do {
-            const std::size_t begin = end;
-            end = std::min(begin + batch_size, queries.size());
-            const auto start = Clock::now();
-            try {
-                run([&] { find(queries.subspan(begin, end - begin), part); });
-            } catch (const Error& error) {
-                throw_renumbered(error, begin);
-            }
-            const auto time = Clock::now() - start;
-            if (time < std::chrono::milliseconds(20)) batch_size *= 4;
-            if (time > std::chrono::milliseconds(80)) batch_size = std::max<std::size_t>(batch_size / 4, 1);
-            const std::size_t before = all.all.size();
-            all.all.insert(all.all.end(), part.all.begin(), part.all.end());
-            for (const std::size_t answers : part.ends) all.ends.push_back(before + answers);
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        } while (end < queries.size());
-        return all;
+    /// Calls find(stop, answers), and returns the answers.
+    template <typename Answer, typename Find>
+    Answers<Answer> answers_of(Find find) {
+        Answers<Answer> answers;
+        run_until_stopped([&](const std::stop_token& stop) { find(stop, answers); });
+        return answers;
     }
 };
 

@@ -174,18 +174,19 @@ struct Tuning {
     /// Scenes (scene/).
     struct Scene {
         StepChoice step = StepChoice::measured;
-        unsigned max_refills = 8;               ///< maximum number of refills of the octants of an earlier step
-        double log_part = 0.125;                ///< part of the objects that may change, in addition to `min_log`
-        double min_log = 256;                   ///< objects that may change in any scene before a full search
-        std::uint64_t visits = 1 << 14;         ///< unit visits that a step may make, plus half the number of objects
-        std::uint64_t changed_pairs = 1 << 20;  ///< changed pairs that a step may find, plus the number of its pairs
-        std::size_t share_visits = 2048;        ///< visits per share of a thread
-        std::size_t run_visits = 256;           ///< visits between checks of the limits
-        std::uint64_t waiting_part = 16;        ///< one changed pair per this many pairs may wait to be merged
-        std::uint64_t min_waiting = 1 << 14;    ///< changed pairs that may wait in a scene of any size
-        std::size_t share_queries = 64;         ///< queries per share
-        std::size_t min_sorted_queries = 256;   ///< queries; fewer are answered in the order of the call
-        std::size_t exact_part = 1 << 14;       ///< pairs of enlarged boxes that a thread filters at a time
+        unsigned max_refills = 8;                ///< maximum number of refills of the octants of an earlier step
+        double log_part = 0.125;                 ///< part of the objects that may change, in addition to `min_log`
+        double min_log = 256;                    ///< objects that may change in any scene before a full search
+        std::uint64_t visits = 1 << 14;          ///< unit visits that a step may make, plus half the number of objects
+        std::uint64_t changed_pairs = 1 << 20;   ///< changed pairs that a step may find, plus the number of its pairs
+        std::size_t share_visits = 2048;         ///< visits per share of a thread
+        std::size_t run_visits = 256;            ///< visits between checks of the limits
+        std::uint64_t waiting_part = 16;         ///< one changed pair per this many pairs may wait to be merged
+        std::uint64_t min_waiting = 1 << 14;     ///< changed pairs that may wait in a scene of any size
+        std::size_t share_queries = 64;          ///< queries per share
+        std::size_t min_sorted_queries = 256;    ///< queries; fewer are answered in the order of the call
+        std::size_t max_kept_answers = 1 << 20;  ///< answers of a call, beyond which their buffers are freed
+        std::size_t exact_part = 1 << 14;        ///< pairs of enlarged boxes that a thread filters at a time
     } scene;
 };
 

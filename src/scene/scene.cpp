@@ -89,41 +89,65 @@ const PairList& Scene::enlarged_pairs() {
 }
 
 void Scene::overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups) {
-    const FloatingPointScope scope;
-    check_queries(boxes, [](const Box3d& box) { return is_box(box); });
-    outside_callbacks(state_).queries().overlaps(state_->view(groups), boxes, answers);
+    overlaps(boxes, answers, groups, {});
 }
 
 void Scene::overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups) {
-    const FloatingPointScope scope;
-    check_queries(spheres, is_sphere);
-    outside_callbacks(state_).queries().overlaps(state_->view(groups), spheres, answers);
+    overlaps(spheres, answers, groups, {});
 }
 
 void Scene::first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups) {
-    const FloatingPointScope scope;
-    check_queries(rays, is_ray);
-    outside_callbacks(state_).queries().first_hits(state_->view(groups), rays, answers);
+    first_hits(rays, answers, groups, {});
 }
 
 void Scene::all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups) {
-    const FloatingPointScope scope;
-    check_queries(rays, is_ray);
-    outside_callbacks(state_).queries().all_hits(state_->view(groups), rays, answers);
+    all_hits(rays, answers, groups, {});
 }
 
 void Scene::nearest(std::span<const Box3d> places, std::size_t count, Answers<Neighbor>& answers,
                     std::uint32_t groups) {
-    nearest(places, NearestLimits{count}, answers, groups);
+    nearest(places, NearestLimits{count}, answers, groups, {});
 }
 
 void Scene::nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
                     std::uint32_t groups) {
+    nearest(places, limits, answers, groups, {});
+}
+
+void Scene::overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups,
+                     std::stop_token stop) {
+    const FloatingPointScope scope;
+    check_queries(boxes, [](const Box3d& box) { return is_box(box); });
+    outside_callbacks(state_).queries().overlaps(state_->view(groups, stop), boxes, answers);
+}
+
+void Scene::overlaps(std::span<const Sphere> spheres, Answers<std::uint32_t>& answers, std::uint32_t groups,
+                     std::stop_token stop) {
+    const FloatingPointScope scope;
+    check_queries(spheres, is_sphere);
+    outside_callbacks(state_).queries().overlaps(state_->view(groups, stop), spheres, answers);
+}
+
+void Scene::first_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups,
+                       std::stop_token stop) {
+    const FloatingPointScope scope;
+    check_queries(rays, is_ray);
+    outside_callbacks(state_).queries().first_hits(state_->view(groups, stop), rays, answers);
+}
+
+void Scene::all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::uint32_t groups, std::stop_token stop) {
+    const FloatingPointScope scope;
+    check_queries(rays, is_ray);
+    outside_callbacks(state_).queries().all_hits(state_->view(groups, stop), rays, answers);
+}
+
+void Scene::nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
+                    std::uint32_t groups, std::stop_token stop) {
     const FloatingPointScope scope;
     check_queries(places, [](const Box3d& box) { return is_box(box); });
     if (!(limits.within >= 0))
         throw Error(ErrorCode::bad_input, "NearestLimits::within must be a number of at least 0");
-    outside_callbacks(state_).queries().nearest(state_->view(groups), places, limits, answers);
+    outside_callbacks(state_).queries().nearest(state_->view(groups, stop), places, limits, answers);
 }
 
 std::vector<std::uint32_t> Scene::overlaps(const Box3d& box, std::uint32_t groups) {

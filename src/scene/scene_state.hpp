@@ -53,7 +53,7 @@ public:
     SceneQueries& queries() { return queries_; }
     /// Returns the view of the current objects that queries read. Builds an octree unless there is one of the current objects, or one
     /// of the last step together with a log of the changes since.
-    SceneQueries::View view(std::uint32_t groups);
+    SceneQueries::View view(std::uint32_t groups, const std::stop_token& stop);
     /// Compares the pairs of the last step with a second algorithm (scene_verify.cpp).
     Verification verify(const std::stop_token& stop);
     /// Lists the octants of the objects' own boxes (scene_octants.cpp).

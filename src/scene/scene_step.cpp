@@ -191,22 +191,23 @@ void Scene::State::build(const SceneBoxSource& source, const std::stop_token& st
     states_.hold_now(SearchedStates::linear);
 }
 
-SceneQueries::View Scene::State::view(std::uint32_t groups) {
+SceneQueries::View Scene::State::view(std::uint32_t groups, const std::stop_token& stop) {
     update_searched();
     const bool follows =
         states_.is_last_step(SearchedStates::octree) && !objects_.log().overflowed() && !history_.is_inconsistent();
     if (!follows && !states_.is_now(SearchedStates::octree)) {
         count_path(Path::octree_for_queries);
         states_.forget(SearchedStates::octree);
-        if (!states_.is_now(SearchedStates::linear)) build(SceneBoxSource(objects_.table(), margin_), {});
+        if (!states_.is_now(SearchedStates::linear)) build(SceneBoxSource(objects_.table(), margin_), stop);
         // Uses the rounding of the build: the origin of rounding depends on all objects, also on objects that were removed since the build.
         const SceneBoxSource source(objects_.table(), {rounding_.exact, rounding_.rounding});
         TeamExecutor executor(team_);
-        octree_.build(linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, {});
+        octree_.build(
+            linear_, [&](std::span<Entry> entries) { source.load_bounds(entries); }, executor, stop);
         states_.hold_now(SearchedStates::octree);
         queried_ = true;
     }
-    return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups};
+    return {objects_.table(), octree_, rounding_.rounding, follows ? &objects_.log() : nullptr, groups, stop};
 }
 
 /// Builds the octree of incremental steps from the linear octree of the last step.

@@ -145,6 +145,7 @@ void shrink(Tuning::Scene& scene, Shrinker& to) {
     to.one_of<std::uint64_t>(scene.min_waiting, {1, 10});
     to.one_of<std::size_t>(scene.share_queries, {1, 2});
     to.one_of<std::size_t>(scene.min_sorted_queries, {1, 1000});
+    to.one_of<std::size_t>(scene.max_kept_answers, {0, 1000});
     to.one_of<std::size_t>(scene.exact_part, {1, 2, 5});
 }
 

@@ -136,6 +136,7 @@ class TakeAll {
 public:
     double at_least(const Box3d&) const { return 0; }
     double limit() const { return 0; }
+    CellBox reach() const { return all_cells; }
     void take(std::uint32_t object) { taken.push_back(object); }
 
     std::vector<std::uint32_t> taken;
@@ -147,7 +148,7 @@ TEST(MutableOctreeTest, AnEmptyOneFindsNothing) {
     octree.search({}, found);
     EXPECT_TRUE(found.empty());
     TakeAll visitor;
-    NearestSearch(octree, RegionMap(octree.space(), {}), visitor).run();
+    NearestSearch(octree, RegionMap(octree.space(), {}), {}, visitor).run();
     EXPECT_TRUE(visitor.taken.empty());
 }
 

@@ -80,6 +80,14 @@ TEST(Unit, NumbersLoseNothing) {
         if (overlaps && begins_here) {
             ASSERT_TRUE(overlap(unit.small(a), unit.small(b))) << "level " << level;
         }
+        SmallBox inside = unit.small(b);
+        inside.begin_inside();
+        const bool meet_in_unit = overlaps && std::min(a.hi[0], b.hi[0]) >= octant.lo[0] &&
+                                  std::min(a.hi[1], b.hi[1]) >= octant.lo[1] &&
+                                  std::min(a.hi[2], b.hi[2]) >= octant.lo[2];
+        if (meet_in_unit) {
+            ASSERT_TRUE(overlap(unit.small(a), inside)) << "level " << level;
+        }
         const CellRegion held = unit.region(unit.small(a));
         for (unsigned axis = 0; axis < 3; ++axis) {
             ASSERT_LE(held.lo[axis], double(std::max(a.lo[axis], octant.lo[axis])) + 1);

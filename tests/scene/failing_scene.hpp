@@ -1,8 +1,8 @@
 // FailingScene: a scene whose calls fail at random before they succeed. After each failure it tests that the call has changed
 // nothing.
 //
-// A call fails because an allocation fails, or because room_for_pairs() refuses memory. A step is also cancelled: at an allocation, or,
-// with test hooks, where it polls for a stop request.
+// A call fails because an allocation fails, or because room_for_pairs() refuses memory. Steps and queries are also cancelled: at an
+// allocation, or, with test hooks, where they poll for a stop request.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ public:
 
     const StepResult& step() {
         const auto attempt = [&]() -> const StepResult& { return scene_->step(stop_->get_token()); };
-        const StepResult& result = make(attempt, true);
+        const StepResult& result = make(attempt, {.stoppable = true, .is_step = true});
         remember(result);
         if (chance(0.2)) {
             const Verification verification = scene_->verify();
@@ -92,6 +92,7 @@ public:
     /// Queries, with the arguments of Scene.
     template <typename... Arguments>
     auto overlaps(Arguments&&... arguments) {
+        cancel_queries();
         return make([&] { return scene_->overlaps(arguments...); });
     }
     auto first_hit(const Ray& ray, std::uint32_t groups) {
@@ -102,6 +103,7 @@ public:
     }
     template <typename... Arguments>
     auto nearest(Arguments&&... arguments) {
+        cancel_queries();
         return make([&] { return scene_->nearest(arguments...); });
     }
 
@@ -129,16 +131,19 @@ private:
     /// Returns a number that is often small.
     std::uint64_t some_number() { return random_() % (std::uint64_t(1) << random_() % 8); }
 
+    struct CallKind {
+        bool stoppable = false, is_step = false;
+    };
     /// Makes a call, after attempts that fail. Returns the result of the first attempt that succeeds. The first attempt of the first step is
     /// refused memory for pairs: later steps rarely need more, so chance alone may refuse none.
     template <typename Call>
-    std::invoke_result_t<Call> make(Call&& call, bool is_step = false) {
-        bool refused = is_step && failing_ > 0 && !std::exchange(stepped_, true);
+    std::invoke_result_t<Call> make(Call&& call, CallKind kind = {}) {
+        bool refused = kind.is_step && failing_ > 0 && !std::exchange(stepped_, true);
         while (refused || chance(failing_)) {
             const Contents before = contents();
             try {
                 if (std::exchange(refused, false)) return disturbed(call, Disturbance::refusal, 0);
-                const auto what = Disturbance(random_() % (is_step ? 4 : 2));
+                const auto what = Disturbance(random_() % (kind.stoppable ? 4 : 2));
                 return disturbed(call, what, some_number());
             } catch (const std::bad_alloc&) {
                 ++failures_.allocations;
@@ -155,6 +160,16 @@ private:
             }
         }
         return call();
+    }
+
+    /// Makes queries with a stop token, which may be cancelled while the scene builds their octree.
+    void cancel_queries() {
+        const std::vector<Box3d> places(3, Box3d{{0, 0, 0}, {0, 0, 0}});
+        Answers<Neighbor> answers;
+        const auto ask = [&] {
+            scene_->nearest(places, NearestLimits{1}, answers, Scene::all_groups, stop_->get_token());
+        };
+        make(ask, {.stoppable = true});
     }
 
     enum class Disturbance : std::uint8_t { allocation, refusal, stop_at_allocation, stop_at_poll };

@@ -9,6 +9,7 @@
 #include "base/tuning.hpp"
 #include "octopair/octopair.hpp"
 #include "scene/query_model.hpp"
+#include "support/calls.hpp"
 #include "support/errors.hpp"
 #include "support/kinds.hpp"
 #include "support/scale.hpp"
@@ -177,6 +178,26 @@ TEST(SceneQueries, NearestObjectsAreWithinTheLimit) {
         EXPECT_TRUE(nearest(0, 3).empty());
         scene.step();
     }
+}
+
+TEST_P(SceneQueriesTest, EndAfterAStopRequest) {
+    Pool pool(GetParam(), 300, 2);
+    const std::vector<Box3d> boxes = widened(make_boxes(GetParam(), 20, 22));
+    const std::vector<Sphere> spheres(20, {{0, 0, 0}, 1});
+    const std::vector<Ray> rays(20, {{0, 0, 0}, {1, 1, 1}});
+    const auto check = [&](auto answers, auto ask) {
+        (void)error_of(ErrorCode::cancelled, [&] { ask(answers, requested_stop()); });
+        ask(answers, std::stop_token());
+        EXPECT_EQ(answers.ends.size(), 20U);
+    };
+    constexpr std::uint32_t groups = Scene::all_groups;
+    Scene& scene = pool.scene;
+    check(Answers<std::uint32_t>(), [&](auto& answers, auto stop) { scene.overlaps(boxes, answers, groups, stop); });
+    check(Answers<std::uint32_t>(), [&](auto& answers, auto stop) { scene.overlaps(spheres, answers, groups, stop); });
+    check(Answers<RayHit>(), [&](auto& answers, auto stop) { scene.first_hits(rays, answers, groups, stop); });
+    check(Answers<RayHit>(), [&](auto& answers, auto stop) { scene.all_hits(rays, answers, groups, stop); });
+    check(Answers<Neighbor>(), [&](auto& answers, auto stop) { scene.nearest(boxes, {2}, answers, groups, stop); });
+    QueryModel(pool.model, scene, 1).check();
 }
 
 TEST(SceneQueries, BadOnesAreRefused) {

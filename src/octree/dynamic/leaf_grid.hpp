@@ -49,6 +49,17 @@ struct GridRange {
     std::uint32_t count() const {
         return (last[0] - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1);
     }
+    /// Returns the number of cells on an axis; 0 or less for an empty range.
+    int length(unsigned axis) const { return int(last[axis]) - int(first[axis]) + 1; }
+    /// Returns the cells of both ranges.
+    GridRange common(const GridRange& other) const {
+        GridRange common;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            common.first[axis] = std::max(first[axis], other.first[axis]);
+            common.last[axis] = std::min(last[axis], other.last[axis]);
+        }
+        return common;
+    }
     bool holds(const Place& place) const {
         bool held = true;
         for (unsigned axis = 0; axis < 3; ++axis) held &= first[axis] <= place[axis] && place[axis] <= last[axis];
@@ -85,6 +96,8 @@ struct alignas(32) LeafGrid {
         return !inner && range.count() <= max_cells_per_entry;
     }
 
+    /// Returns the first cell of the space on an axis of the grid's cells at `place`.
+    std::uint32_t first_cell(unsigned axis, std::uint32_t place) const { return lo[axis] + (place << side(axis)); }
     CellRegion region() const;
     CellRegion region(const GridRange& range) const;
     Unit own_unit() const;

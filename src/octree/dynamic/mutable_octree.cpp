@@ -231,10 +231,10 @@ void MutableOctree::search(const CellBox& box, std::vector<std::uint32_t>& found
     });
 }
 
-std::uint32_t MutableOctree::unit_at(const Cell& cell) const {
+Unit MutableOctree::unit_at(const Cell& cell) const {
     const LeafGrid& grid = grids_[directory_.leaf(cell).octant()];
-    std::uint32_t unit = 0;
-    grid.for_each_cell(grid.range_of({cell, cell}), [&](const Unit& at, const auto&) { unit = at.index; });
+    Unit unit;
+    grid.for_each_cell(grid.range_of({cell, cell}), [&](const Unit& at, const auto&) { unit = at; });
     return unit;
 }
 

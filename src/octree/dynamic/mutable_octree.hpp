@@ -89,7 +89,7 @@ public:
     void search(const CellBox& box, std::vector<std::uint32_t>& found) const;
     bool empty() const { return grids_.empty(); }
     /// Returns the unit of a leaf that holds a cell. Units of near numbers are near in memory. Requires: the octree is not empty.
-    std::uint32_t unit_at(const Cell& cell) const;
+    Unit unit_at(const Cell& cell) const;
 
     /// The visits of units that some changes need.
     struct Visits {

@@ -22,6 +22,10 @@ struct SmallBox {
         lo_bytes |= lo << (8 * axis);
         hi_bytes |= hi << (8 * axis);
     }
+    /// Lets a box that begins before the unit begin in it. Then it overlaps all entries that it meets in the unit, whatever their classes.
+    void begin_inside() {
+        for (unsigned axis = 0; axis < 3; ++axis) lo_bytes |= std::uint32_t(lo(axis) == 0) << (8 * axis);
+    }
     std::uint8_t lo(unsigned axis) const { return std::uint8_t(lo_bytes >> (8 * axis)); }
     std::uint8_t hi(unsigned axis) const { return std::uint8_t(hi_bytes >> (8 * axis)); }
     /// Returns the axes, as class bits, on which the box begins before the unit.

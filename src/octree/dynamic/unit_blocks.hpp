@@ -48,9 +48,9 @@ public:
     /// Calls found(object) for each entry that overlaps `wanted`.
     template <typename Found>
     void search(std::uint32_t unit, const SmallBox& wanted, Found&& found) const;
-    /// Calls visit(box, object) for each entry.
+    /// Calls visit(box, object) for each entry that overlaps `wanted`.
     template <typename Visit>
-    void for_each(std::uint32_t unit, Visit&& visit) const;
+    void for_each(std::uint32_t unit, const SmallBox& wanted, Visit&& visit) const;
 
     // Three steps that prefetch the data of a unit for a later call. Call them in this order, with some time between two steps.
     void prefetch_head(std::uint32_t unit) const;
@@ -85,10 +85,13 @@ void UnitBlocks::search(std::uint32_t unit, const SmallBox& wanted, Found&& foun
 }
 
 template <typename Visit>
-void UnitBlocks::for_each(std::uint32_t unit, Visit&& visit) const {
+void UnitBlocks::for_each(std::uint32_t unit, const SmallBox& wanted, Visit&& visit) const {
     for (std::uint32_t at = heads_[unit]; at != SmallBlock::none; at = blocks_[at].next) {
         const SmallBlock& block = blocks_[at];
-        for (std::size_t i = 0; i < block.count; ++i) visit(block.box(i), block.objects[i]);
+        for (std::uint32_t hits = overlapping(block, wanted); hits != 0; hits &= hits - 1) {
+            const auto i = std::size_t(std::countr_zero(hits));
+            visit(block.box(i), block.objects[i]);
+        }
     }
 }
 

@@ -25,6 +25,13 @@ struct OCTOPAIR_PRIVATE_EXPORT OctantCube {
     unsigned level = 0;
 
     OctantCube child(unsigned digit) const;
+    /// Returns the digit of the child that holds `cell`, or that is nearest to it.
+    unsigned digit(const Cell& cell) const {
+        const std::uint32_t half = (cells_per_axis >> level) / 2;
+        unsigned digit = 0;
+        for (unsigned axis = 0; axis < 3; ++axis) digit |= unsigned(cell[axis] >= lo[axis] + half) << axis;
+        return digit;
+    }
     /// Returns a bit mask of the children that `box` touches.
     /// Requires: `box` touches this octant.
     unsigned touched_below(const CellBox& box) const {

@@ -37,6 +37,8 @@ struct alignas(16) CellBox {
     Cell lo = {}, hi = {};
 };
 
+inline constexpr CellBox all_cells = {{}, {cells_per_axis - 1, cells_per_axis - 1, cells_per_axis - 1, 0}};
+
 /// Returns a level at which the box touches at most two octants on each axis, so at most eight. It is the deepest such level, or the
 /// level above the deepest.
 inline unsigned natural_level(const CellBox& box) {

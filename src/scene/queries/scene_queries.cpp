@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/stop.hpp"
 #include "base/test_hooks.hpp"
 #include "base/tuning.hpp"
 #include "octree/dynamic/nearest_search.hpp"
@@ -15,6 +16,26 @@
 namespace octopair {
 
 namespace {
+
+constexpr double most = std::numeric_limits<double>::max();
+constexpr Box3d everywhere = {{-most, -most, -most}, {most, most, most}};
+
+/// Returns a point as a box.
+Box3d point(const double (&at)[3]) { return {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}}; }
+
+/// Returns a box that contains all points whose rounded distance from `box` is at most `distance`.
+Box3d widened(const Box3d& box, double distance) {
+    // More than the relative rounding errors of the distance and of the bounds.
+    constexpr double roundings = 0x1p-48;
+    Box3d wide;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double size = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
+        const double reach = distance + roundings * (distance + size);
+        wide.min[axis] = std::max(box.min[axis] - reach, -most);
+        wide.max[axis] = std::min(box.max[axis] + reach, most);
+    }
+    return wide;
+}
 
 /// Returns whether the object is alive and in one of the groups of the query.
 bool is_wanted(const SceneQueries::View& scene, std::uint32_t index) {
@@ -43,15 +64,19 @@ public:
 
     double at_least(const Box3d& region) const { return visitor_.at_least(region); }
     double limit() const { return visitor_.limit(); }
+    CellBox reach() const { return cells(visitor_.reach()); }
     void take(std::uint32_t index) {
         if (is_unchanged(scene_, index) && is_wanted(scene_, index)) visitor_.try_object(index);
     }
-    void search(const RegionMap& map) {
+    /// `begin`: where the search begins.
+    void search(const RegionMap& map, const Box3d& begin) {
         for_each_changed(scene_, [&](std::uint32_t index) { visitor_.try_object(index); });
-        NearestSearch(scene_.octree, map, *this).run();
+        NearestSearch(scene_.octree, map, cells(begin).lo, *this).run();
     }
 
 private:
+    CellBox cells(const Box3d& box) const { return scene_.octree.space().cells(scene_.rounding.entry(box, 0)); }
+
     const SceneQueries::View& scene_;
     Visitor& visitor_;
 };
@@ -69,6 +94,8 @@ public:
         constexpr double roundings = 4 * std::numeric_limits<double>::epsilon();
         return std::min(*along * (1 - roundings) - underflow, std::numeric_limits<double>::max());
     }
+
+    Box3d reach() const { return everywhere; }
 
 protected:
     std::optional<double> hit_object(std::uint32_t index) const { return hit(ray_, table_.box(index)); }
@@ -121,6 +148,7 @@ public:
     // Rounded distances have the order of the exact ones. So an object with a larger rounded distance than the last one in
     // the list is farther. An object with an equal rounded distance may be nearer, and is compared exactly.
     double limit() const { return square_limit_; }
+    Box3d reach() const { return widened(place_, is_full() ? list_.back().distance : limits_.within); }
     void try_object(std::uint32_t index) {
         const Box3d box = table_.box(index);
         if (square_at_least(place_, box) > square_limit_) return;
@@ -154,26 +182,10 @@ private:
 };
 
 /// Returns a box that contains a sphere.
-Box3d box_around(const Sphere& sphere) {
-    // More than the relative rounding error of the box.
-    constexpr double roundings = 0x1p-48;
-    constexpr double most = std::numeric_limits<double>::max();
-    Box3d around;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double centre = sphere.centre[axis];
-        const double reach = sphere.radius + roundings * (sphere.radius + std::abs(centre));
-        around.min[axis] = std::max(centre - reach, -most);
-        around.max[axis] = std::min(centre + reach, most);
-    }
-    return around;
-}
+Box3d box_around(const Sphere& sphere) { return widened(point(sphere.centre), sphere.radius); }
 
 /// Returns the origin of a ray, as a box.
-Box3d origin_of(const Ray& ray) {
-    Box3d begin;
-    for (int axis = 0; axis < 3; ++axis) begin.min[axis] = begin.max[axis] = ray.origin[axis];
-    return begin;
-}
+Box3d origin_of(const Ray& ray) { return point(ray.origin); }
 
 }  // namespace
 
@@ -191,7 +203,7 @@ SceneQueries::Order SceneQueries::sorted_by_place(const View& scene, std::size_t
         const std::size_t end = std::min((share + 1) * share_size, queries);
         for (std::size_t i = share * share_size; i < end; ++i) {
             const CellBox cells = scene.octree.space().cells(scene.rounding.entry(begin(i), 0));
-            keys[i] = std::uint64_t(scene.octree.unit_at(cells.lo)) << 32 | i;
+            keys[i] = std::uint64_t(scene.octree.unit_at(cells.lo).index) << 32 | i;
         }
     };
     team_.for_each((queries + share_size - 1) / share_size, std::ref(set_keys));
@@ -201,28 +213,44 @@ SceneQueries::Order SceneQueries::sorted_by_place(const View& scene, std::size_t
 /// Calls find(query, worker) for each query in parallel, in this order, and joins the answers in the order of the queries. `find` appends
 /// its answers to `collected`.
 template <typename Answer, typename Find>
-void SceneQueries::answer(const Order& order, std::vector<Answer> Worker::*collected, Answers<Answer>& answers,
+void SceneQueries::answer(const Run& run, std::vector<Answer> Worker::*collected, Answers<Answer>& answers,
                           Find&& find) {
+    const std::size_t queries = run.order.queries;
     for (Worker& worker : workers_) (worker.*collected).clear();
-    parts_.resize(order.queries);
+    parts_.resize(queries);
     const std::size_t share_size = tuning().scene.share_queries;
     const auto find_share = [&](std::size_t share, unsigned number) {
         Worker& worker = workers_[number];
-        const std::size_t end = std::min((share + 1) * share_size, order.queries);
+        const std::size_t end = std::min((share + 1) * share_size, queries);
         for (std::size_t at = share * share_size; at < end; ++at) {
-            const std::size_t i = order[at];
+            throw_if_stopped(run.stop);
+            const std::size_t i = run.order[at];
             const std::size_t begin = (worker.*collected).size();
             find(i, worker);
             parts_[i] = {number, begin, (worker.*collected).size()};
         }
     };
-    team_.for_each((order.queries + share_size - 1) / share_size, std::ref(find_share));
+    team_.for_each((queries + share_size - 1) / share_size, std::ref(find_share));
+    join(run.stop, collected, answers);
+}
+
+/// Joins the answers of all workers in the order of the queries, and frees large buffers.
+template <typename Answer>
+void SceneQueries::join(const std::stop_token& stop, std::vector<Answer> Worker::*collected, Answers<Answer>& answers) {
+    std::size_t size = 0;
+    for (const Worker& worker : workers_) size += (worker.*collected).size();
     answers.all.clear();
+    answers.all.reserve(size);
     answers.ends.clear();
+    answers.ends.reserve(parts_.size());
     for (const Part& part : parts_) {
+        throw_if_stopped(stop);
         const auto all = (workers_[part.worker].*collected).begin();
         answers.all.insert(answers.all.end(), all + std::ptrdiff_t(part.begin), all + std::ptrdiff_t(part.end));
         answers.ends.push_back(answers.all.size());
+    }
+    if (size > tuning().scene.max_kept_answers) {
+        for (Worker& worker : workers_) (worker.*collected) = {};
     }
 }
 
@@ -244,22 +272,22 @@ void SceneQueries::find_overlaps(const View& scene, const Box3d& around, const Q
 
 void SceneQueries::overlaps(const View& scene, std::span<const Box3d> boxes, Answers<std::uint32_t>& answers) {
     const Order order = sorted_by_place(scene, boxes.size(), [&](std::size_t i) { return boxes[i]; });
-    answer(order, &Worker::indices, answers,
+    answer({order, scene.stop}, &Worker::indices, answers,
            [&](std::size_t i, Worker& worker) { find_overlaps(scene, boxes[i], boxes[i], worker); });
 }
 
 void SceneQueries::overlaps(const View& scene, std::span<const Sphere> spheres, Answers<std::uint32_t>& answers) {
     const Order order = sorted_by_place(scene, spheres.size(), [&](std::size_t i) { return box_around(spheres[i]); });
-    answer(order, &Worker::indices, answers,
+    answer({order, scene.stop}, &Worker::indices, answers,
            [&](std::size_t i, Worker& worker) { find_overlaps(scene, box_around(spheres[i]), spheres[i], worker); });
 }
 
 void SceneQueries::first_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
     const RegionMap map(scene.octree.space(), scene.rounding.origin);
     const Order order = sorted_by_place(scene, rays.size(), [&](std::size_t i) { return origin_of(rays[i]); });
-    answer(order, &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
+    answer({order, scene.stop}, &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         FirstHit first(scene, rays[i]);
-        SceneProbe(scene, first).search(map);
+        SceneProbe(scene, first).search(map, origin_of(rays[i]));
         if (first.best().index != ObjectTable::none) worker.hits.push_back(first.best());
     });
 }
@@ -267,10 +295,10 @@ void SceneQueries::first_hits(const View& scene, std::span<const Ray> rays, Answ
 void SceneQueries::all_hits(const View& scene, std::span<const Ray> rays, Answers<RayHit>& answers) {
     const RegionMap map(scene.octree.space(), scene.rounding.origin);
     const Order order = sorted_by_place(scene, rays.size(), [&](std::size_t i) { return origin_of(rays[i]); });
-    answer(order, &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
+    answer({order, scene.stop}, &Worker::hits, answers, [&](std::size_t i, Worker& worker) {
         const auto begin = std::ptrdiff_t(worker.hits.size());
         AllHits all(scene, rays[i], worker.hits);
-        SceneProbe(scene, all).search(map);
+        SceneProbe(scene, all).search(map, origin_of(rays[i]));
         std::sort(worker.hits.begin() + begin, worker.hits.end(), [](const RayHit& a, const RayHit& b) {
             return a.along != b.along ? a.along < b.along : a.index < b.index;
         });
@@ -282,10 +310,10 @@ void SceneQueries::nearest(const View& scene, std::span<const Box3d> places, con
                            Answers<Neighbor>& answers) {
     const RegionMap map(scene.octree.space(), scene.rounding.origin);
     const Order order = sorted_by_place(scene, places.size(), [&](std::size_t i) { return places[i]; });
-    answer(order, &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
+    answer({order, scene.stop}, &Worker::neighbors, answers, [&](std::size_t i, Worker& worker) {
         if (limits.count == 0) return;
         Nearest nearest(scene, places[i], limits, worker.neighbors);
-        SceneProbe(scene, nearest).search(map);
+        SceneProbe(scene, nearest).search(map, places[i]);
     });
 }
 

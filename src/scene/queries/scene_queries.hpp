@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "base/radix_sort.hpp"
@@ -29,6 +30,7 @@ public:
         const OutwardRounding& rounding;  ///< rounding of the octree's entries
         const ChangeLog* log;             ///< changes since the octree was brought up to date; null: none
         std::uint32_t groups;             ///< bit mask: an object is an answer only if it is in one of these groups
+        const std::stop_token& stop;      ///< ends the queries with Error{cancelled}
     };
 
     explicit SceneQueries(Team& team) : team_(team), workers_(team.threads()) {}
@@ -64,8 +66,15 @@ private:
 
     template <typename Begin>
     Order sorted_by_place(const View& scene, std::size_t queries, Begin&& begin);
+    /// Order of the queries, and the request that ends them.
+    struct Run {
+        Order order;
+        const std::stop_token& stop;
+    };
     template <typename Answer, typename Find>
-    void answer(const Order& order, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
+    void answer(const Run& run, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
+    template <typename Answer>
+    void join(const std::stop_token& stop, std::vector<Answer> Worker::*collected, Answers<Answer>& answers);
     template <typename Query>
     void find_overlaps(const View& scene, const Box3d& around, const Query& query, Worker& worker) const;
 
