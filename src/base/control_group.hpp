@@ -18,6 +18,11 @@ struct ControlGroupLimits {
 /// Returns the strictest limits on the control group of this process and its parents. `root`: folder that contains proc and sys.
 ControlGroupLimits control_group_limits(const std::string& root = "");
 
+/// Returns an upper bound on the bytes of memory that the control group of this process and its parents leave: the limit, less the memory
+/// in use that neither belongs to files nor can be reclaimed or swapped. Returns nothing without a limit, or if it cannot be read.
+/// `swap`: free swap space of the machine.
+std::optional<std::uint64_t> control_group_free_memory(std::uint64_t swap, const std::string& root = "");
+
 /// Returns the number of processors that this process may run on (sched_setaffinity(2) of its first thread); at least 1.
 OCTOPAIR_PRIVATE_EXPORT unsigned allowed_processors();
 

@@ -49,7 +49,7 @@ namespace octopair {
     /* engine/ */ \
     path(list_block_full) path(sparse_bucket_sorted) path(bucket_sorted) path(bucket_in_slots) path(bucket_split) \
     path(slotted_rows_in_page) path(slotted_rows_staged) path(slots_exceeded) path(long_row_sorted) path(row_in_bitmap) \
-    path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(stream_lead_wrote) path(stream_lead_held) \
+    path(buffer_over) path(window) path(window_of_one) path(limit_reached) path(counted_ahead) path(stream_lead_wrote) path(stream_lead_held) \
     path(stream_lead_full) path(stream_helper_full) path(radix_sorted) \
     /* engine/processes/ */ \
     path(region_kept) path(region_copied) path(ring_wrapped) path(nested_shared) \

@@ -121,18 +121,22 @@ struct Tuning {
         std::size_t batch = 1 << 13;                    ///< smaller batches are collected before a sink receives them
         std::size_t max_pairs_per_sink_call = 1 << 16;  ///< from a list: more calls let progress grow in small steps
         std::size_t list_block = 1 << 15;               ///< minimum pairs per block of a PairList; at least 64 pages
-        std::size_t page = 512;                  ///< pairs per page of a bucket of the ascending order; a power of two
-        unsigned bucket_row_bits = 12;           ///< log2 of the number of objects per bucket
-        unsigned bucket_bits = 10;               ///< log2 of the maximum number of buckets
-        unsigned bucket_split_bits = 6;          ///< log2 of the number of parts of a bucket that is split
-        std::size_t sorted_at_once = 1 << 20;    ///< a bucket with more pairs is split
-        std::size_t bucket_pairs = 1 << 17;      ///< expected number of pairs per bucket, at most
-        std::size_t slotted_pairs_per_row = 12;  ///< a bucket with more on average has no slots
-        unsigned max_slotted_row_bits = 14;      ///< log2 of rows: slots of more rows exceed the L2 cache
-        unsigned sparse_row_bits = 5;            ///< log2 of rows per pair: with more, pairs are sorted by comparison
-        std::size_t bitmap_columns = 64;         ///< a row with a pair in one of this many columns uses a bit map
-        std::size_t min_radix_sort = 512;        ///< keys; fewer keys are sorted by comparison, not by a radix sort
-        std::size_t shares_ahead = 4;            ///< shares per thread that a stream computes ahead of the sink
+        std::size_t page = 512;                   ///< pairs per page of a bucket of the ascending order; a power of two
+        unsigned bucket_row_bits = 12;            ///< log2 of the number of objects per bucket
+        unsigned bucket_bits = 10;                ///< log2 of the maximum number of buckets
+        unsigned bucket_split_bits = 6;           ///< log2 of the number of parts of a bucket that is split
+        std::size_t sorted_at_once = 1 << 20;     ///< a bucket with more pairs is split
+        std::size_t bucket_pairs = 1 << 17;       ///< expected number of pairs per bucket, at most
+        std::size_t slotted_pairs_per_row = 12;   ///< a bucket with more on average has no slots
+        unsigned max_slotted_row_bits = 14;       ///< log2 of rows: slots of more rows exceed the L2 cache
+        unsigned sparse_row_bits = 5;             ///< log2 of rows per pair: with more, pairs are sorted by comparison
+        std::size_t bitmap_columns = 64;          ///< a row with a pair in one of this many columns uses a bit map
+        std::size_t min_radix_sort = 512;         ///< keys; fewer keys are sorted by comparison, not by a radix sort
+        std::uint64_t unchecked_bytes = 1 << 28;  ///< bytes: lists of fewer are not compared with the free memory
+        std::uint64_t checked_step = 1 << 25;     ///< bytes by which a list grows between such comparisons
+        std::uint64_t forecast_pairs = 1 << 27;   ///< pairs found before a search forecasts that all are too many
+        double counting_seconds = 10;             ///< seconds after which pairs that are too many are not counted on
+        std::size_t shares_ahead = 4;             ///< shares per thread that a stream computes ahead of the sink
     } output;
 
     /// Worker processes (engine/processes/).
