@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <array>
@@ -43,6 +44,30 @@ public:
 private:
     rlimit before_{};
 };
+
+TEST_F(AtomicFileTest, HasRoomOnItsFileSystem) {
+    struct statvfs status {};
+    ASSERT_EQ(::statvfs(directory_.path().c_str(), &status), 0);
+    const double free = double(status.f_bavail) * double(status.f_frsize);
+    const auto room = io::room_for_file(path_);
+    if (room) {
+        EXPECT_NEAR(double(room->bytes), free, 0.1 * free + 1e8);
+        EXPECT_STREQ(room->what, "are free on its file system");
+    }
+    const FileSizeLimit limit(5000);
+    EXPECT_EQ(io::room_for_file(path_)->bytes, 5000u);
+    EXPECT_STREQ(io::room_for_file(path_)->what, "are allowed for a file (ulimit -f)");
+    EXPECT_EQ(io::room_for_file(directory_.file("none/result.csv"))->bytes, 5000u);
+}
+
+/// The copy for a stream is in memory.
+TEST_F(AtomicFileTest, HasRoomInMemoryForAStream) {
+    const auto room = io::room_for_file("/dev/null");
+    ASSERT_TRUE(room);
+    EXPECT_GT(room->bytes, 1'000'000u);
+    EXPECT_STREQ(room->what, "of memory are free");
+    EXPECT_FALSE(io::room_for_file(directory_.file("none/result.csv")));
+}
 
 TEST_F(AtomicFileTest, AppearsOnCommit) {
     AtomicFile file(path_);

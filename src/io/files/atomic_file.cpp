@@ -2,7 +2,9 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/statfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "base/free_memory.hpp"
 #include "io/files/failure.hpp"
 
 namespace octopair::io {
@@ -31,6 +34,23 @@ fs::path resolved(const std::string& path) {
         at = at.parent_path() / target;
     }
     return at;
+}
+
+std::string directory_of(const fs::path& path) {
+    return path.parent_path().empty() ? "." : path.parent_path().string();
+}
+
+/// Returns the free bytes of the file system that contains `directory`. Returns nothing if the number is unknown, or if the file system,
+/// or the server of a network file system, can compress files.
+std::optional<std::uint64_t> free_space(const std::string& directory) {
+    // btrfs, bcachefs, F2FS, ZFS, NFS, SMB, SMB 2. Their numbers are not in a header of all systems.
+    constexpr std::array<std::uint32_t, 7> compressing = {0x9123683E, 0xCA451A4E, 0xF2F52010, 0x2FC12FC1,
+                                                          0x6969,     0xFF534D42, 0xFE534D42};
+    struct statfs status {};
+    if (::statfs(directory.c_str(), &status) != 0 || status.f_blocks == 0) return {};
+    if (std::ranges::find(compressing, std::uint32_t(status.f_type)) != compressing.end()) return {};
+    // As in df(1), blocks that are reserved for the superuser do not count.
+    return std::uint64_t(status.f_bavail) * std::uint64_t(status.f_frsize > 0 ? status.f_frsize : status.f_bsize);
 }
 
 std::string random_name(const std::string& directory) {
@@ -66,6 +86,16 @@ std::string own_link(int descriptor) { return fmt::format("/proc/self/fd/{}", de
 
 }  // namespace
 
+std::optional<FileRoom> room_for_file(const std::string& path) {
+    const auto space = is_output_stream(path) ? free_memory() : free_space(directory_of(resolved(path)));
+    rlimit limit{};
+    const bool limited = ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+    if (limited && (!space || limit.rlim_cur < *space))
+        return FileRoom{limit.rlim_cur, "are allowed for a file (ulimit -f)"};
+    if (!space) return {};
+    return FileRoom{*space, is_output_stream(path) ? "of memory are free" : "are free on its file system"};
+}
+
 AtomicFile::AtomicFile(const std::string& path) {
     if (is_output_stream(path)) {
         path_ = path;
@@ -87,7 +117,7 @@ AtomicFile::AtomicFile(const std::string& path, Shared) {
 void AtomicFile::choose_place(const std::string& path) {
     const fs::path target = resolved(path);
     path_ = target.string();
-    directory_ = target.parent_path().empty() ? "." : target.parent_path().string();
+    directory_ = directory_of(target);
     struct stat status {};
     if (::stat(path_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
         fail_io(path, "cannot be replaced, it is not a regular file", S_ISDIR(status.st_mode) ? EISDIR : EEXIST);

@@ -11,12 +11,23 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/descriptor.hpp"
 #include "io/files/output_stream.hpp"
 
 namespace octopair::io {
+
+/// Bytes that a file can have.
+struct FileRoom {
+    std::uint64_t bytes;
+    const char* what;  ///< end of a message about the bytes: what bounds them
+};
+
+/// Returns how many bytes the temporary file of an AtomicFile for `path` can get, by the free space of its file system and RLIMIT_FSIZE;
+/// for a stream, by the free memory. Returns nothing if that is unknown, as on file systems that can compress files.
+std::optional<FileRoom> room_for_file(const std::string& path);
 
 class AtomicFile final : public OutputStream {
 public:
