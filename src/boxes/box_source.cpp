@@ -20,6 +20,12 @@ bool is_plain(const Objects& set) {
     return std::holds_alternative<std::span<const Box3f>>(set.boxes) && set.padding.empty();
 }
 
+/// Returns the boxes of `set` if they are float64 without padding; otherwise null.
+const Box3d* plain_wide_boxes(const Objects& set) {
+    const auto* const boxes = std::get_if<std::span<const Box3d>>(&set.boxes);
+    return boxes != nullptr && set.padding.empty() ? boxes->data() : nullptr;
+}
+
 /// Returns the padding of the objects [begin, begin + count), or none if no object has padding.
 std::span<const double> part_of(std::span<const double> padding, std::size_t begin, std::size_t count) {
     return padding.empty() ? padding : padding.subspan(begin, count);
@@ -32,7 +38,12 @@ BoxSource::BoxSource(const Objects& first, const Objects* second, const EntryFor
       second_(second),
       first_size_(first.size()),
       second_size_(second != nullptr ? second->size() : 0),
-      form_(form) {}
+      form_(form) {
+    const Box3d* const wide_second = second != nullptr ? plain_wide_boxes(*second) : nullptr;
+    if (second != nullptr && wide_second == nullptr) return;
+    plain_wide_first_ = plain_wide_boxes(first);
+    plain_wide_second_ = wide_second;
+}
 
 BoxSource::BoxSource(const Objects& first, const Objects* second, double margin)
     : BoxSource(first, second,
@@ -60,6 +71,12 @@ Box3d BoxSource::box(std::uint32_t object, double& padding) const {
 }
 
 bool BoxSource::is_pair(std::uint32_t a, std::uint32_t b) const {
+    if (plain_wide_first_ != nullptr) {
+        const auto plain = [&](std::uint32_t object) -> const Box3d& {
+            return object < first_size_ ? plain_wide_first_[object] : plain_wide_second_[object - first_size_];
+        };
+        return within_reach(plain(a), plain(b), form_.rounding.margin);
+    }
     double padding_a = 0;
     double padding_b = 0;
     const Box3d box_a = box(a, padding_a);

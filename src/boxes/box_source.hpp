@@ -67,6 +67,9 @@ private:
     std::size_t first_size_;
     std::size_t second_size_;
     EntryForm form_;
+    // Boxes of the sets if all are float64 without padding; otherwise null. is_pair() reads these boxes in place.
+    const Box3d* plain_wide_first_ = nullptr;
+    const Box3d* plain_wide_second_ = nullptr;
 };
 
 }  // namespace octopair
