@@ -53,6 +53,20 @@ private:
     ErrorPlace place_;
 };
 
+/// An Error{resource_limit}: the pairs of a call need more than the free memory, or are more than `Options::max_pairs`.
+class TooManyPairs : public Error {
+public:
+    TooManyPairs(const std::string& message, std::uint64_t pairs, bool exact)
+        : Error(ErrorCode::resource_limit, message), pairs_(pairs), exact_(exact) {}
+    /// Returns the number of pairs that the call would return (at most `Options::limit`). If exact() is false, the number is a lower bound.
+    std::uint64_t pairs() const noexcept { return pairs_; }
+    bool exact() const noexcept { return exact_; }
+
+private:
+    std::uint64_t pairs_;
+    bool exact_;
+};
+
 inline std::optional<ErrorPlace> Error::place() const noexcept {
     const auto* placed = dynamic_cast<const PlacedError*>(this);
     return placed == nullptr ? std::nullopt : std::optional(placed->where());

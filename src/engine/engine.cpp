@@ -2,11 +2,14 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "base/call_scope.hpp"
 #include "base/floating_point_scope.hpp"
+#include "base/free_memory.hpp"
 #include "base/memory.hpp"
 #include "engine/pair_list.hpp"
 #include "engine/request.hpp"
@@ -25,6 +28,38 @@ void check_set(const Objects& set, const char* name) {
                                               " paddings for " + std::to_string(set.size()) + " objects");
     }
 }
+
+/// The output of a call, with Options::max_pairs as a bound that holds for every engine.
+class BoundedOutput {
+public:
+    /// Borrows `output`.
+    BoundedOutput(const detail::Output& output, std::optional<std::uint64_t> most) : output_(output), most_(most) {
+        if (output.sink == nullptr || !most) return;
+        sink_ = [&sink = *output.sink, left = *most, this](std::span<const Pair> pairs) mutable {
+            if (pairs.size() > left) refuse();
+            left -= pairs.size();
+            sink(pairs);
+        };
+        output_.sink = &sink_;
+    }
+    BoundedOutput(const BoundedOutput&) = delete;
+    BoundedOutput& operator=(const BoundedOutput&) = delete;
+
+    const detail::Output& output() const { return output_; }
+    /// Throws: TooManyPairs if the list has too many pairs.
+    void check_list() const {
+        if (most_ && output_.list != nullptr && output_.list->size() > *most_) refuse();
+    }
+
+private:
+    [[noreturn]] void refuse() const {
+        throw TooManyPairs("more than " + digit_groups(*most_) + " pairs, which is Options::max_pairs", *most_, false);
+    }
+
+    detail::Output output_;
+    std::optional<std::uint64_t> most_;
+    PairSink sink_;
+};
 
 }  // namespace
 
@@ -66,12 +101,19 @@ Summary Engine::call(const detail::Request& request, const detail::Output& outpu
     try {
         const ProgressSink progress = detail::callback_of(own, request.options.progress);
         const detail::Control control{stop, progress};
-        if (!request.options.verify) return run(request, output, control);
-        return detail::VerifiedCall{request, output, control}.run(verification_threads(),
-                                                                  [this](const auto&... call) { return run(call...); });
+        const BoundedOutput bounded(output, request.options.max_pairs);
+        const auto search = [this](const auto&... call) { return run(call...); };
+        const Summary summary = request.options.verify ? detail::VerifiedCall{request, bounded.output(), control}.run(
+                                                             verification_threads(), search)
+                                                       : run(request, bounded.output(), control);
+        bounded.check_list();
+        return summary;
     } catch (const std::bad_alloc&) {
-        if (output.list != nullptr) detail::storage_of(*output.list).reset();
+        if (output.list != nullptr) detail::storage_of(*output.list).release();
         throw Error(ErrorCode::resource_limit, "out of memory");
+    } catch (const TooManyPairs&) {
+        if (output.list != nullptr) detail::storage_of(*output.list).release();
+        throw;
     } catch (...) {
         if (output.list != nullptr) detail::storage_of(*output.list).reset();
         throw;

@@ -32,6 +32,11 @@ void detail::PairStorage::reset() {
     free_ = {};
 }
 
+void detail::PairStorage::release() {
+    reset();
+    blocks_.clear();
+}
+
 std::span<Pair> detail::PairStorage::take_block(std::size_t pairs) {
     const std::size_t block_pairs = tuning().output.list_block;
     const std::lock_guard lock(mutex_);
@@ -41,9 +46,9 @@ std::span<Pair> detail::PairStorage::take_block(std::size_t pairs) {
         // Free large blocks that are too small now. Otherwise a reused list would accumulate blocks of every past size.
         const auto hoarded = [&](const auto& block) { return block.size() > block_pairs; };
         blocks_.erase(std::remove_if(free, blocks_.end(), hoarded), blocks_.end());
-        // If room_ limits the memory, each block is as small as possible.
         const std::size_t fresh = std::max({pairs, block_pairs, room_ ? 0 : growth()});
         if (room_) room_(fresh * sizeof(Pair));
+        if (watch_) watch_(fresh * sizeof(Pair));
         blocks_.emplace_back(fresh);
         found = blocks_.end() - 1;
     }
@@ -51,14 +56,18 @@ std::span<Pair> detail::PairStorage::take_block(std::size_t pairs) {
     return blocks_[taken_++].span();
 }
 
+std::uint64_t detail::PairStorage::held_bytes() const {
+    std::uint64_t held = 0;
+    for (const auto& block : blocks_) held += block.size() * sizeof(Pair);
+    return held;
+}
+
 /// Returns a block size for a long list, in pairs: a quarter of the list, in whole huge pages. Returns 0 for a short list.
 /// With blocks below the size of a huge page, first calls took up to 1.9 times as long as later calls.
 std::size_t detail::PairStorage::growth() const {
     constexpr std::size_t huge_page = (std::size_t(2) << 20) / sizeof(Pair);
-    std::size_t held = 0;
-    for (const auto& block : blocks_) held += block.size();
     constexpr std::size_t most = 16 * huge_page;
-    return std::min(held / 4, most) / huge_page * huge_page;
+    return std::min(std::size_t(held_bytes()) / sizeof(Pair) / 4, most) / huge_page * huge_page;
 }
 
 std::span<const Pair> detail::PairStorage::copy(std::span<const Pair> pairs) {

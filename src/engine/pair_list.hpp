@@ -22,10 +22,18 @@ struct PairStorage {
     std::vector<std::span<const Pair>> chunks;
     std::uint64_t size = 0;
 
-    /// Sets a function that runs before each block is allocated, with the bytes of the block. Its exceptions propagate.
-    void ask(std::function<void(std::uint64_t bytes)> room) { room_ = std::move(room); }
+    /// A function that runs before each block is allocated, with the bytes of the block. Its exceptions propagate.
+    using BeforeBlock = std::function<void(std::uint64_t bytes)>;
+    /// Sets a function that limits the memory. Each block is then as small as possible.
+    void ask(BeforeBlock room) { room_ = std::move(room); }
+    /// Sets a function that only watches the memory.
+    void watch(BeforeBlock watch) { watch_ = std::move(watch); }
+    /// Returns the bytes of all blocks. Requires: no other thread takes a block.
+    std::uint64_t held_bytes() const;
     /// Makes the list empty and all its blocks free.
     void reset();
+    /// Makes the list empty and frees its memory.
+    void release();
     /// Returns a free block of at least `pairs` pairs, valid until the next reset(). Thread safety: any thread.
     std::span<Pair> take_block(std::size_t pairs);
     /// Returns a copy of `pairs` in the list's blocks.
@@ -51,7 +59,7 @@ private:
     std::size_t growth() const;
 
     std::mutex mutex_;
-    std::function<void(std::uint64_t)> room_;
+    BeforeBlock room_, watch_;
     std::vector<Buffer<Pair>> blocks_;
     std::shared_ptr<const void> kept_;
     std::span<Pair> free_;   // free part of the block that copy() fills

@@ -20,7 +20,7 @@ namespace octopair {
 inline std::size_t page_pairs() { return tuning().output.page; }
 
 /// Thrown by a pass that needs more pages than its budget allows. At most a quarter of its pages are then partly filled,
-/// if each thread or worker may take at least 8 pages.
+/// if each thread or worker may take at least 8 pages. Also thrown if a list may need more memory than is free (engine/pair_room.hpp).
 struct OverBudget {};
 
 /// Number of pages that all threads or workers of a pass together may still take. Also counts the pages that one thread or worker took.

@@ -3,10 +3,13 @@
 //   octal      Scans once. Passes pairs to the receiver as they are found. The receiver ends the scan at the first pair beyond the limit.
 //   ascending  Scans into buckets and sorts these in a buffer, which the receiver gets. If the buffer is too small: scans to count each
 //              object's pairs, then scans once for each window of objects whose pairs fit.
+//
+// Both count the pairs first if these may be too many for the receiver (pair_room.hpp).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -18,6 +21,17 @@
 
 namespace octopair {
 
+/// Counts the pairs of a call whose scan was abandoned. Throws: TooManyPairs if they do not fit.
+template <Passes P>
+void count_ahead(P& passes, Call& call) {
+    constexpr double counting_part = 0.2;  // of the progress that is left
+    count_path(Path::counted_ahead);
+    call.progress.abandon_stage();
+    const double begin = call.progress.end();
+    call.room->require(passes.count(call, begin + counting_part * (1 - begin), call.room->count_limit()));
+}
+
+/// Requires: `call.room` is set.
 template <Passes P>
 class PairStream {
 public:
@@ -29,9 +43,22 @@ public:
           receiver_(call.output, call.request.options.limit) {}
 
     void octal() {
+        std::uint64_t skipped = 0;  // pairs that an abandoned scan has delivered
+        const auto take = [&](std::span<const Pair> pairs) {
+            const std::size_t again = std::size_t(std::min<std::uint64_t>(skipped, pairs.size()));
+            skipped -= again;
+            const auto fresh = pairs.subspan(again);
+            if (call_.room->is_doubtful(receiver_.pairs() + fresh.size())) throw OverBudget{};
+            receiver_.take(fresh);
+        };
         receive([&] {
-            passes_.stream_octal(
-                call_, [&](std::span<const Pair> pairs) { receiver_.take(pairs); }, 1);
+            try {
+                passes_.stream_octal(call_, take, 1);
+            } catch (const OverBudget&) {
+                count_ahead(passes_, call_);
+                skipped = receiver_.pairs();
+                passes_.stream_octal(call_, take, 1);
+            }
         });
         call_.summary.steps.scan = std::max(0.0, call_.summary.steps.scan - receiver_.sink_seconds());
     }
@@ -44,8 +71,14 @@ public:
                                    progress_after_collection);
         } catch (const OverBudget&) {
             count_path(Path::buffer_over);
+            if (call_.room->is_doubtful(call_.buffer_pairs())) {
+                count_ahead(passes_, call_);
+            } else {
+                call_.progress.abandon_stage();
+            }
             return windows();
         }
+        call_.room->require({held_.size});
         hand_out_held(1);
     }
 
@@ -59,6 +92,7 @@ private:
         const std::uint64_t objects = call_.source.size();
         std::vector<std::uint32_t> counts(objects, 0);
         passes_.count_by_object(call_, counts, 0.5);
+        call_.room->require({std::accumulate(counts.begin(), counts.end(), std::uint64_t(0))});
         // A quarter of the buffer is reserved for partly filled pages.
         const std::uint64_t most = call_.buffer_pairs() - call_.buffer_pairs() / 4;
         ObjectRange window{0, 0};

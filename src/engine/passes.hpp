@@ -14,7 +14,9 @@
 #include "base/tuning.hpp"
 #include "boxes/box_source.hpp"
 #include "engine/bucket_sort.hpp"
+#include "engine/pair_count.hpp"
 #include "engine/pair_list.hpp"
+#include "engine/pair_room.hpp"
 #include "engine/progress.hpp"
 #include "engine/request.hpp"
 
@@ -28,6 +30,7 @@ struct Call {
     std::stop_source stop;  ///< requested by the caller, or when a pass fails or is abandoned
     Progress& progress;
     Summary summary;
+    PairRoom* room = nullptr;  ///< room for the pairs of the call; null if they are only counted
 
     /// Returns `Options::buffer_bytes` in pairs, but at least the minimum in tuning.hpp.
     std::uint64_t buffer_pairs() const {
@@ -39,23 +42,24 @@ struct Call {
 /// progress to the fraction `progress`. Requires: lists are empty, and counts are 0.
 ///   width()            number of threads or workers that share a scan
 ///   build              builds the octree of the call's objects
-///   count              returns the number of pairs
+///   count              returns the number of pairs. Stops when `limit` is reached
 ///   count_by_object    adds the number of pairs with object i as `a` to counts[i]
-///   list_octal         appends all pairs in octal order
+///   list_octal         appends all pairs in octal order. Throws OverBudget if `call.room` does, as does list_ascending
 ///   stream_octal       passes all pairs to `deliver` in octal order, and buffers at most call.buffer_pairs(). What `deliver` throws ends it
 ///   list_ascending     appends the pairs within `bounds` in ascending order. Throws OverBudget if the pairs exceed `bounds.max_pairs`
 ///   end                ends the call: frees references to the caller's data
 template <typename T>
-concept Passes = requires(T passes, Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
-                          std::span<std::uint32_t> counts, const PairSink& deliver, double progress) {
-    { passes.width() } -> std::same_as<unsigned>;
-    passes.build(call, progress);
-    { passes.count(call, progress) } -> std::same_as<std::uint64_t>;
-    passes.count_by_object(call, counts, progress);
-    passes.list_octal(call, list, progress);
-    passes.stream_octal(call, deliver, progress);
-    passes.list_ascending(call, list, bounds, progress);
-    passes.end();
-};
+concept Passes =
+    requires(T passes, Call& call, detail::PairStorage& list, const AscendingBounds& bounds,
+             std::span<std::uint32_t> counts, const PairSink& deliver, double progress, const CountLimit& limit) {
+        { passes.width() } -> std::same_as<unsigned>;
+        passes.build(call, progress);
+        { passes.count(call, progress, limit) } -> std::same_as<PairCount>;
+        passes.count_by_object(call, counts, progress);
+        passes.list_octal(call, list, progress);
+        passes.stream_octal(call, deliver, progress);
+        passes.list_ascending(call, list, bounds, progress);
+        passes.end();
+    };
 
 }  // namespace octopair

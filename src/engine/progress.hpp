@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 
@@ -17,24 +18,30 @@ public:
     /// Requires: `sink` outlives this object. `sink` may be empty.
     explicit Progress(const ProgressSink& sink) : sink_(sink) {}
 
-    /// Begins a stage of `work` units, during which the fraction grows linearly to `end`.
+    /// Begins a stage of `work` units, during which the fraction grows linearly to `end`. Requires: no thread calls add().
     void stage(double end, std::uint64_t work) {
-        if (!sink_) return;
-        const std::lock_guard lock(mutex_);
         begin_ = end_;
         end_ = end;
         work_ = std::max<std::uint64_t>(1, work);
         done_ = 0;
-        report(begin_);
-    }
-    /// Returns the fraction at the end of the stage.
-    double end() const { return end_; }
-    /// Counts `work` units as done, and reports to the sink about every hundredth. Thread safety: any thread.
-    void add(std::uint64_t work) {
         if (!sink_) return;
         const std::lock_guard lock(mutex_);
+        report(begin_);
+    }
+    /// Corrects the amount of work of the stage. Requires: no thread calls add().
+    void set_work(std::uint64_t work) { work_ = std::max<std::uint64_t>(1, work); }
+    /// Ends the stage before its work is done. The next stage begins at the current fraction. Requires: no thread calls add().
+    void abandon_stage() { end_ = begin_ + (end_ - begin_) * of_stage(); }
+    /// Returns the fraction at the end of the stage.
+    double end() const { return end_; }
+    /// Returns how much of the work of the stage is done, 0 to 1. Thread safety: any thread.
+    double of_stage() const { return std::min(1.0, double(done_.load()) / double(work_)); }
+    /// Counts `work` units as done, and reports to the sink about every hundredth. Thread safety: any thread.
+    void add(std::uint64_t work) {
         done_ += work;
-        report(begin_ + (end_ - begin_) * std::min(1.0, double(done_) / double(work_)));
+        if (!sink_) return;
+        const std::lock_guard lock(mutex_);
+        report(begin_ + (end_ - begin_) * of_stage());
     }
     /// Reports 1 to the sink.
     void finish() {
@@ -58,7 +65,7 @@ private:
     double end_ = 0;
     double reported_ = -1;
     std::uint64_t work_ = 1;
-    std::uint64_t done_ = 0;
+    std::atomic<std::uint64_t> done_ = 0;
 };
 
 }  // namespace octopair

@@ -53,10 +53,13 @@ private:
 
     void scan(Call& call) {
         const bool octal = call.request.options.order == Order::octal;
-        if (call.output.list == nullptr && call.output.sink == nullptr) {
-            count(call);
-        } else if (call.output.list != nullptr && !call.request.options.limit) {
-            list(call, detail::storage_of(*call.output.list), octal);
+        if (call.output.list == nullptr && call.output.sink == nullptr) return count(call);
+        detail::PairStorage* const list_storage =
+            call.output.list != nullptr ? &detail::storage_of(*call.output.list) : nullptr;
+        PairRoom room(call.request.options, list_storage, call.progress);
+        call.room = &room;
+        if (list_storage != nullptr && !call.request.options.limit) {
+            list(call, *list_storage, octal);
         } else {
             PairStream<P> stream(passes_, call, held_);
             octal ? stream.octal() : stream.ascending();
@@ -64,18 +67,23 @@ private:
     }
 
     void count(Call& call) {
-        const std::uint64_t pairs = passes_.count(call, 1);
+        const std::uint64_t pairs = passes_.count(call, 1, {}).pairs;
         const std::uint64_t limit = call.request.options.limit.value_or(~std::uint64_t(0));
         call.summary.pairs = std::min(limit, pairs);
         call.summary.truncated = pairs > limit;
     }
 
     void list(Call& call, detail::PairStorage& list, bool octal) {
-        if (octal) {
-            passes_.list_octal(call, list, 1);
-        } else {
-            const std::uint64_t objects = call.source.size();
-            passes_.list_ascending(call, list, {{0, objects}, objects}, 1);
+        const std::uint64_t objects = call.source.size();
+        const auto fill = [&] {
+            octal ? passes_.list_octal(call, list, 1) : passes_.list_ascending(call, list, {{0, objects}, objects}, 1);
+        };
+        try {
+            fill();
+        } catch (const OverBudget&) {
+            list.reset();
+            count_ahead(passes_, call);
+            fill();
         }
         call.summary.pairs = list.size;
     }

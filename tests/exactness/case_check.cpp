@@ -98,10 +98,30 @@ public:
             expect_bytes("stream", found, all(order));
             (void)Call(case_).in(order).limited().stream(engine(0), found);
             expect_bytes("limited stream", found, first(all(order)));
+            check_bounded(order);
         }
     }
 
 private:
+    /// A stream with Options::max_pairs delivers all pairs, or fails if they are more. An error that has the number of pairs has the right
+    /// number.
+    void check_bounded(Order order) {
+        std::vector<Pair> found;
+        Call call = Call(case_).in(order);
+        call.options.max_pairs = case_.limit;
+        try {
+            (void)call.stream(engine(1), found);
+            expect_bytes("bounded stream", found, all(order));
+        } catch (const TooManyPairs& excess) {
+            const std::uint64_t pairs = all(order).size();
+            expect("bound", pairs > case_.limit, "refused without need");
+            expect("count of a refusal", excess.exact() ? excess.pairs() == pairs : excess.pairs() < pairs,
+                   "a wrong count");
+            expect("refused stream", found.size() <= case_.limit, "more pairs than the bound");
+        }
+        expect("bound kept", found.size() <= case_.limit, "more pairs than the bound");
+    }
+
     Engine& engine(std::size_t i) const { return engines_(case_.threads[i]); }
     const std::vector<Pair>& all(Order order) const { return order == Order::ascending ? expected_ : octal_; }
     std::vector<Pair> first(const std::vector<Pair>& all) const {

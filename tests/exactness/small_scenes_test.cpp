@@ -93,6 +93,7 @@ TEST_P(SmallScenes, AreWhatBruteForceFinds) {
                                long_row_sorted,
                                row_in_bitmap,
                                buffer_over,
+                               counted_ahead,
                                window,
                                window_of_one,
                                limit_reached,

@@ -110,6 +110,10 @@ void shrink(Tuning::Output& output, Shrinker& to) {
     to.one_of<std::size_t>(output.bitmap_columns, {1, 2, 64});
     to.one_of<std::size_t>(output.min_radix_sort, {1, 4});
     to.one_of<std::size_t>(output.shares_ahead, {1, 2});
+    to.one_of<std::uint64_t>(output.unchecked_bytes, {8, 100, 1 << 28});
+    to.one_of<std::uint64_t>(output.checked_step, {1, 1000});
+    to.one_of<std::uint64_t>(output.forecast_pairs, {1, 10});
+    to.one_of<double>(output.counting_seconds, {0, 10});
 }
 
 void shrink(Tuning::Processes& processes, Shrinker& to) {

@@ -134,6 +134,47 @@ TEST_F(WorkerLimits, OfFilesThatPairsDoNotFitInto) {
     }
 }
 
+/// The pairs are counted before they fill their memory. A file for pairs has at most 900 MB here.
+TEST_F(WorkerLimits, OfAListWhoseNumberIsToldEarly) {
+    const std::vector<Box3f> boxes(16'000, Box3f{{0, 0, 0}, {1, 1, 1}});  // 127,992,000 pairs, 1.02 GB
+    const auto engine = make_process_engine(2);
+    const Lowered lowered(RLIMIT_FSIZE, 900'000'000);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        PairList list;
+        EXPECT_EQ(error_of(ErrorCode::resource_limit,
+                           [&] {
+                               engine->find_pairs(Objects{boxes, {}}, list, {.order = order});
+                           }),
+                  "127,992,000 pairs need 1.02 GB of memory, 900 MB are free; use count_pairs, limit or stream_pairs");
+        EXPECT_EQ(list.size(), 0u);
+        const std::vector<Box3f> fewer(8'500, boxes[0]);  // 289 MB, doubtful at first
+        engine->find_pairs(Objects{fewer, {}}, list, {.order = order});
+        EXPECT_EQ(list.size(), 36'120'750u);
+        list = PairList();
+    }
+    EXPECT_EQ(worker_faults(*engine).ended + worker_faults(*engine).stopped, 0u);
+}
+
+TEST_F(WorkerLimits, OfTheRoomOfAStream) {
+    const std::vector<Box3f> boxes(2000, Box3f{{0, 0, 0}, {1, 1, 1}});  // 1,999,000 pairs
+    const auto engine = make_process_engine(2);
+    for (const Order order : {Order::octal, Order::ascending}) {
+        std::uint64_t delivered = 0;
+        const PairSink sink = [&](std::span<const Pair> pairs) { delivered += pairs.size(); };
+        for (const std::uint64_t most : {100'000u, 400'000u, 1'998'999u}) {
+            Options options{.order = order, .buffer_bytes = 1 << 20, .max_pairs = most};
+            const std::string message = error_of(ErrorCode::resource_limit, [&] {
+                engine->stream_pairs(Objects{boxes, {}}, sink, options);
+            });
+            EXPECT_TRUE(has_text(message, "1,999,000 pairs; Options::max_pairs is "));
+        }
+        EXPECT_LE(delivered, order == Order::ascending ? 0u : 2'498'999u);
+        delivered = 0;
+        engine->stream_pairs(Objects{boxes, {}}, sink, {.order = order, .max_pairs = 1'999'000});
+        EXPECT_EQ(delivered, 1'999'000u);
+    }
+}
+
 rlim_t mapped_bytes() {
     std::uint64_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
@@ -156,6 +197,22 @@ TEST_F(WorkerLimits, OfAddressSpace) {
     }
     EXPECT_GT(made, 1u);
     EXPECT_GT(refused, 1u);
+}
+
+/// The memory for pairs is mapped, so that a list in this memory needs no more addresses.
+TEST_F(WorkerLimits, OfAddressSpaceWithMappedMemory) {
+    if (sanitized) GTEST_SKIP() << "sanitizers map terabytes";
+    const std::vector<Box3f> boxes(12'000, Box3f{{0, 0, 0}, {1, 1, 1}});  // 576 MB of pairs
+    const auto engine = make_process_engine(2);
+    PairList list;
+    engine->find_pairs(Objects{std::span(boxes).first(100), {}}, list);
+    list = PairList();
+    const Lowered lowered(RLIMIT_AS, mapped_bytes() + (rlim_t(50) << 20));
+    for (const Order order : {Order::octal, Order::ascending}) {
+        engine->find_pairs(Objects{boxes, {}}, list, {.order = order});
+        EXPECT_EQ(list.size(), 71'994'000u);
+        list = PairList();
+    }
 }
 
 /// How a child ended that may start few processes and threads.

@@ -88,7 +88,7 @@ RankPasses::RankPasses(unsigned threads)
     : ThreadPasses(threads, [this](const ThreadScan& scan) {
           const EntrySource& source = searched(scan.call);
           RankExecutor named(scan.executor, *stops_, {source.join(), share_.positions, wanted_});
-          scan_octants({scan.call, named, scan.progress}, {octree(), share_.begin, share_.end}, source);
+          scan_octants({scan.call, named, scan.progress, scan.stop}, {octree(), share_.begin, share_.end}, source);
       }) {}
 
 void RankPasses::build(Call& call, double progress) {

@@ -55,7 +55,7 @@ public:
     }
 };
 
-/// Counts the pairs of each share. `Place`: record(share, number of pairs).
+/// Counts the pairs of each share. `Place`: record(share, number of pairs); check(number of pairs so far), which may throw.
 template <typename Place>
 class CountOutput final : public ShareWriter {
 public:
@@ -69,8 +69,11 @@ public:
         place_.record(share, pairs_);
     }
     bool counting() const override { return true; }
-    void write(std::span<const Pair> pairs) override { pairs_ += pairs.size(); }
-    void write_count(std::uint64_t pairs) override { pairs_ += pairs; }
+    void write(std::span<const Pair> pairs) override { write_count(pairs.size()); }
+    void write_count(std::uint64_t pairs) override {
+        pairs_ += pairs;
+        place_.check(pairs_);
+    }
 
 private:
     Place place_;

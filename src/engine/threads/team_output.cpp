@@ -51,10 +51,19 @@ private:
     std::uint64_t shares_ = 0;  // of earlier steps
 };
 
+/// Thrown by a share when enough pairs are counted.
+struct CountedEnough {};
+
 /// Adds the numbers of pairs of all shares.
 struct CountPlace {
     std::atomic<std::uint64_t>& all;
+    const CountLimit& limit;
     void record(std::uint64_t, std::uint64_t pairs) { all += pairs; }
+    void check(std::uint64_t pairs) const {
+        if (!limit.reached(all.load(std::memory_order_relaxed) + pairs)) return;
+        all += pairs;
+        throw CountedEnough{};
+    }
 };
 
 /// A run of a committed share.
@@ -84,11 +93,17 @@ struct BucketPlace {
 
 }  // namespace
 
-std::uint64_t count_pairs(Team& team, const FindPairs& find) {
+PairCount count_pairs(Team& team, const FindPairs& find, const CountLimit& limit) {
     std::atomic<std::uint64_t> pairs = 0;
-    OutputExecutor<CountOutput<CountPlace>> executor(team, [&](unsigned) { return CountOutput(CountPlace{pairs}); });
-    find(executor);
-    return pairs;
+    OutputExecutor<CountOutput<CountPlace>> executor(team, [&](unsigned) {
+        return CountOutput(CountPlace{pairs, limit});
+    });
+    try {
+        find(executor);
+    } catch (const CountedEnough&) {
+        return {pairs - 1, false};
+    }
+    return {pairs};
 }
 
 void count_pairs_by_object(Team& team, std::span<std::uint32_t> counts, const FindPairs& find) {

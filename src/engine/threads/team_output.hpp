@@ -11,6 +11,7 @@
 
 #include "base/private_export.hpp"
 #include "engine/bucket_sort.hpp"
+#include "engine/pair_count.hpp"
 #include "engine/pair_list.hpp"
 #include "octopair/engine.hpp"
 #include "octree/executor.hpp"
@@ -36,8 +37,8 @@ private:
 /// Finds pairs: writes them in shares of the executor.
 using FindPairs = std::function<void(Executor&)>;
 
-/// Returns the number of pairs.
-OCTOPAIR_PRIVATE_EXPORT std::uint64_t count_pairs(Team& team, const FindPairs& find);
+/// Returns the number of pairs. Stops when `limit` is reached.
+OCTOPAIR_PRIVATE_EXPORT PairCount count_pairs(Team& team, const FindPairs& find, const CountLimit& limit = {});
 /// Adds the number of pairs with object i as `a` to counts[i].
 OCTOPAIR_PRIVATE_EXPORT void count_pairs_by_object(Team& team, std::span<std::uint32_t> counts, const FindPairs& find);
 /// Adds the number of pairs of each bin to `counts`. The bin of a pair is its `a` without the low `bin_shift` bits.

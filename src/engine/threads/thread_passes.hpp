@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <stop_token>
 #include <utility>
 
 #include "base/timed.hpp"
@@ -20,6 +21,7 @@ struct ThreadScan {
     Call& call;
     Executor& executor;
     double progress;
+    std::stop_token stop;
 };
 
 class ThreadPasses {
@@ -29,7 +31,9 @@ public:
     ThreadPasses(unsigned threads, Scan scan) : team_(threads), scan_(std::move(scan)) {}
 
     unsigned width() const { return team_.threads(); }
-    std::uint64_t count(Call& call, double progress) { return count_pairs(team_, scan_into(call, progress)); }
+    PairCount count(Call& call, double progress, const CountLimit& limit = {}) {
+        return count_pairs(team_, scan_into(call, progress), limit);
+    }
     void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress) {
         count_pairs_by_object(team_, counts, scan_into(call, progress));
     }
@@ -37,11 +41,20 @@ public:
         list_pairs(team_, list, scan_into(call, progress));
     }
     void stream_octal(Call& call, const PairSink& deliver, double progress) {
-        stream_pairs(team_, {deliver, call.buffer_pairs(), call.stop}, scan_into(call, progress));
+        // What `deliver` throws ends the scan, not the call, which may scan again.
+        std::stop_source abandon;
+        const std::stop_callback forward(call.stop.get_token(), [&] { abandon.request_stop(); });
+        stream_pairs(team_, {deliver, call.buffer_pairs(), abandon}, [&](Executor& executor) {
+            scan_({call, executor, progress, abandon.get_token()});
+        });
     }
     void list_ascending(Call& call, detail::PairStorage& list, const AscendingBounds& bounds, double progress) {
         const double begin = call.progress.end();
-        const auto begin_sort = [&](std::uint64_t pairs) { call.progress.stage(progress, pairs); };
+        const auto begin_sort = [&](std::uint64_t pairs) {
+            if (call.room != nullptr)
+                call.room->require({pairs});  // ends the forecasts: the list grows while it is sorted
+            call.progress.stage(progress, pairs);
+        };
         const auto sorted = [&](std::uint64_t pairs) { call.progress.add(pairs); };
         list_ascending_pairs(team_, list, bounds, scan_into(call, begin + ascending_scan_part * (progress - begin)),
                              {call.stop.get_token(), begin_sort, sorted});
@@ -66,13 +79,15 @@ protected:
         Call& call = scan.call;
         const Timed timed(call.summary.steps.scan);
         call.progress.stage(scan.progress, octants.octree.entry_count(octants.begin, octants.end));
-        octopair::scan(octants, {source, call.stop.get_token(), scan_memory_}, scan.executor,
+        octopair::scan(octants, {source, scan.stop, scan_memory_}, scan.executor,
                        [&](std::uint64_t entries) { call.progress.add(entries); });
     }
 
     /// Returns a function that scans into an executor.
     FindPairs scan_into(Call& call, double progress) {
-        return [this, &call, progress](Executor& executor) { scan_({call, executor, progress}); };
+        return [this, &call, progress](Executor& executor) {
+            scan_({call, executor, progress, call.stop.get_token()});
+        };
     }
 
 private:

@@ -43,7 +43,7 @@ void ProcessPasses::run(Call& call, double progress, const std::shared_ptr<Regio
     const double scan_part = pass_.kind == PassKind::list_ascending ? ascending_scan_part : 1;
     // The progress of this stage includes the steps before the scan.
     call.progress.stage(begin + scan_part * (progress - begin), call.source.size() * 5 / 4);
-    PassProgress shown{progress, false, 0};
+    PassProgress shown{.end = progress};
     watch.stop = call.stop.get_token();
     watch.poll = [&, poll = std::move(watch.poll)] {
         show_progress(call, shown);
@@ -65,13 +65,15 @@ void ProcessPasses::show_progress(Call& call, PassProgress& shown) {
     std::uint64_t scanned = 0, to_order = 0, ordered = 0;
     for (unsigned i = 0; i < pass_.workers; ++i) {
         const Slot& slot = pool_.view().slot(i);
-        scanned += slot.entries_scanned.load();
+        const std::uint64_t own = slot.entries_scanned.load();
+        scanned += own;
+        if (own > 0 && !std::exchange(shown.scanning, true)) call.progress.set_work(slot.entries);
         to_order = std::max(to_order, slot.pairs_to_order.load());
         ordered += slot.pairs_ordered.load();
     }
     if (to_order > 0 && !shown.ordering) {
         call.progress.stage(shown.end, to_order);
-        shown = {shown.end, true, 0};
+        shown = {shown.end, true, true, 0};
     }
     const std::uint64_t done = shown.ordering ? ordered : scanned;
     if (done > shown.done) call.progress.add(done - std::exchange(shown.done, done));
@@ -114,12 +116,62 @@ std::shared_ptr<Region> ProcessPasses::free_pairs() {
     return *found;
 }
 
-std::uint64_t ProcessPasses::count(Call& call, double progress) {
+PairCount ProcessPasses::count(Call& call, double progress, const CountLimit& limit) {
+    struct CountedEnough {};
     pass_.kind = PassKind::count;
-    run(call, progress, free_pairs(), {});
-    std::uint64_t all = 0;
+    std::uint64_t all = 0, counted = 0;  // `all`: the pairs of the first `counted` shares
+    PassWatch watch;
+    watch.poll = [&] {
+        while (counted < max_shares) {
+            const Share& share = pool_.view().shares(counted, 1).front();
+            if (!ShareState::of(share.state.load()).is(pool_.number(), ShareStatus::done)) break;
+            all += share.pairs;
+            ++counted;
+        }
+        if (limit.reached(all)) throw CountedEnough{};
+    };
+    try {
+        run(call, progress, free_pairs(), std::move(watch));
+    } catch (const CountedEnough&) {
+        return {all - 1, false};
+    }
+    all = 0;
     for (const Share& share : shares_done()) all += share.pairs;
-    return all;
+    return {all};
+}
+
+/// Runs `pass_`, which fills a list. If it is the list of the call, `call.room` watches the memory `pairs`.
+// NOLINTNEXTLINE(readability-function-size): the parameters of run(), and the list.
+void ProcessPasses::run_list(Call& call, double progress, const detail::PairStorage& list,
+                             const std::shared_ptr<Region>& pairs) {
+    const bool watched = call.output.list != nullptr && &detail::storage_of(*call.output.list) == &list;
+    if (!watched || call.room == nullptr) return run(call, progress, pairs, {});
+    try {
+        PassWatch watch;
+        watch.poll = [&, growing = true]() mutable { growing = growing && check_growth(call, pairs->memory); };
+        run(call, progress, pairs, std::move(watch));
+    } catch (const Error& error) {
+        // The workers may fill all memory before the client looks at it.
+        const bool found_pairs = pool_.view().control_block().next_block.load() > 0;
+        if (error.code() != ErrorCode::resource_limit || !found_pairs || !call.room->can_count()) throw;
+        call.room->hold(pairs->memory.committed_bytes(), pairs->memory.size());
+        pass_.built = 1;
+        throw OverBudget{};
+    }
+}
+
+/// Returns false when the number of pairs is known because the workers sort them. Throws: as PairRoom::check() and require().
+bool ProcessPasses::check_growth(Call& call, const SharedMemory& pairs) {
+    call.room->hold(pairs.committed_bytes(), pairs.size());
+    for (unsigned i = 0; i < pass_.workers; ++i) {
+        if (const std::uint64_t all = pool_.view().slot(i).pairs_to_order.load(); all > 0) {
+            call.room->require({all});
+            return false;
+        }
+    }
+    const std::uint64_t found = pool_.view().control_block().next_block.load() * list_block_pairs;
+    if (found >= tuning().output.unchecked_bytes / sizeof(Pair)) call.room->check(found);
+    return true;
 }
 
 /// Repeats the whole pass when a worker is lost. The lost share alone cannot be repeated, because the lost worker may already have added
@@ -145,7 +197,7 @@ void ProcessPasses::count_by_object(Call& call, std::span<std::uint32_t> counts,
 void ProcessPasses::list_octal(Call& call, detail::PairStorage& list, double progress) {
     pass_.kind = PassKind::list_octal;
     const auto pairs = free_pairs();
-    run(call, progress, pairs, {});
+    run_list(call, progress, list, pairs);
     append_runs(list, pairs);
 }
 
@@ -154,7 +206,7 @@ void ProcessPasses::list_ascending(Call& call, detail::PairStorage& list, const 
     pass_.kind = PassKind::list_ascending;
     pass_.bounds = bounds;
     const auto pairs = free_pairs();
-    run(call, progress, pairs, {});
+    run_list(call, progress, list, pairs);
     append_runs(list, pairs);
 }
 

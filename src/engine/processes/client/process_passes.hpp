@@ -20,7 +20,7 @@ public:
     void end() noexcept { regions_.clear(); }
     /// Prepares the inputs. The next pass builds the octree, so workers need only one request for both.
     void build(Call& call, double progress);
-    std::uint64_t count(Call& call, double progress);
+    PairCount count(Call& call, double progress, const CountLimit& limit);
     void count_by_object(Call& call, std::span<std::uint32_t> counts, double progress);
     void list_octal(Call& call, detail::PairStorage& list, double progress);
     void stream_octal(Call& call, const PairSink& deliver, double progress);
@@ -30,13 +30,16 @@ private:
     /// The work of a pass that has been reported as progress of the call.
     struct PassProgress {
         double end = 1;          // progress of the call at the end of the pass
-        bool ordering = false;   // the workers sort pairs; before, they scan entries
+        bool scanning = false;   // a worker scans entries, so that their number is known
+        bool ordering = false;   // the workers sort pairs
         std::uint64_t done = 0;  // scanned entries or sorted pairs
     };
 
     void run(Call& call, double progress, const std::shared_ptr<Region>& pairs, PassWatch watch);
     void show_progress(Call& call, PassProgress& shown);
     void take_results(Call& call);
+    void run_list(Call& call, double progress, const detail::PairStorage& list, const std::shared_ptr<Region>& pairs);
+    bool check_growth(Call& call, const SharedMemory& pairs);
     void append_runs(detail::PairStorage& list, const std::shared_ptr<Region>& pairs);
     std::shared_ptr<Region> free_pairs();
     std::span<Share> shares_done();

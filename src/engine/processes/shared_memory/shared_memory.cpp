@@ -96,6 +96,12 @@ SharedMemory::~SharedMemory() {
     if (data_ != nullptr) ::munmap(data_, size_);
 }
 
+std::uint64_t SharedMemory::committed_bytes() const {
+    constexpr std::uint64_t unit = 512;  // of st_blocks
+    struct stat status {};
+    return ::fstat(file_.number(), &status) == 0 ? std::uint64_t(status.st_blocks) * unit : 0;
+}
+
 void SharedMemory::refuse(std::uint64_t bytes) const {
     throw Error(ErrorCode::resource_limit,
                 "shared memory: " + std::to_string(bytes) + " more bytes do not fit into " + std::to_string(size_));

@@ -33,6 +33,8 @@ public:
     ~SharedMemory();
 
     std::uint64_t size() const { return size_; }
+    /// Returns the bytes that all processes have committed.
+    std::uint64_t committed_bytes() const;
     int descriptor() const { return file_.number(); }
     std::byte* data() const { return data_; }
     bool contains(const void* memory) const {
