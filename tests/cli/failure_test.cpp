@@ -126,6 +126,47 @@ TEST_F(Failure, AFileSizeLimitLeavesTheOldFile) {
     EXPECT_EQ(directory_.names(), (std::vector<std::string>{"big.npy", "p.npy"}));
 }
 
+/// A result of 256 MiB or more is compared with the free space before it is written.
+TEST_F(Failure, AResultThatCannotFitIsForetold) {
+    generate("coincident", 9000);  // 40,495,500 pairs
+    write_file(file("p.npy"), "old");
+    const std::string advice =
+        ", 307 MB are allowed for a file (ulimit -f); use --count-only, --limit or a stream (without --output)\n";
+    const auto limited = [&](const std::string& arguments) {
+        return shell("ulimit -f 600000; \"$P\" detect big.npy " + arguments);
+    };
+    for (const std::string options : {"", " --order octal"}) {
+        const Outcome outcome = limited("--output p.npy" + options);
+        EXPECT_EQ(outcome.status, 5);
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_EQ(outcome.err, "octopair: p.npy: 40,495,500 pairs need 324 MB" + advice);
+    }
+    for (const auto& [name, bytes] : {std::pair("p.csv", "at least 375 MB"), {"p.jsonl", "at least 780 MB"}}) {
+        const Outcome outcome = limited(std::string("--output ") + name);
+        EXPECT_EQ(outcome.status, 5);
+        EXPECT_EQ(outcome.err, std::string("octopair: ") + name + ": 40,495,500 pairs need " + bytes + advice);
+    }
+    EXPECT_EQ(content("p.npy"), "old");
+    EXPECT_EQ(directory_.names(), (std::vector<std::string>{"big.npy", "p.npy"}));
+    EXPECT_EQ(limited("--count-only --quiet").out, "40495500\n");
+    EXPECT_EQ(limited("--quiet | tail -n 1").out, "8998,8999\n");
+    EXPECT_EQ(limited("--limit 1000 --output p.npy --quiet").status, 0);
+    EXPECT_EQ(content("p.npy").size(), 128u + 8000);
+}
+
+TEST_F(Failure, AFullDiskIsForetold) {
+    if (!can_mount()) GTEST_SKIP() << "no permission to mount a disk";
+    generate("coincident", 9000);
+    const Outcome outcome = shell(
+        "mount -t tmpfs -o size=1m tmpfs disk; \"$P\" detect big.npy --output disk/p.npy; status=$?; ls -A disk; "
+        "umount disk; exit $status");
+    EXPECT_EQ(outcome.status, 5);
+    EXPECT_EQ(outcome.err,
+              "octopair: disk/p.npy: 40,495,500 pairs need 324 MB, 1.05 MB are free on its file system; "
+              "use --count-only, --limit or a stream (without --output)\n");
+    EXPECT_EQ(outcome.out, "");
+}
+
 TEST_F(Failure, AClosedPipe) {
     generate("coincident", 2000);
     const Outcome outcome = shell("{ \"$P\" detect big.npy; echo $? >status; } | head -n 2; cat status");

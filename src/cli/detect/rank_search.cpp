@@ -10,6 +10,7 @@
 #include "base/floating_point_scope.hpp"
 #include "base/timed.hpp"
 #include "cli/detect/rank_group.hpp"
+#include "cli/output/output_room.hpp"
 #include "cli/output/piece_output.hpp"
 #include "cli/ranks/cluster.hpp"
 #include "io/formats/format_choice.hpp"
@@ -150,8 +151,12 @@ public:
 
     void search(std::uint64_t frame) override {
         if (has_filters(run_.request)) return filter(frame);
-        run_.report.add(find(frame), 0);
+        const Summary summary = find(frame);
+        run_.report.add(summary, 0);
         if (output_ == nullptr) return;
+        cluster_.together([&] {
+            if (cluster_.first()) room_.require(summary.pairs);
+        });
         run_.progress.clear();
         const Timed timed(run_.report.seconds.write);
         has_wide_indices(run_) ? output_->write(frame, wide_piece_) : output_->write(frame, piece_);
@@ -209,10 +214,19 @@ private:
             } else if (counts_only()) {
                 summary = engine_->stream_pairs(input, {}, options, run_.stop);
             } else {
-                summary = engine_->find_pairs(input, piece_, options, run_.stop);
+                summary = list_pairs(input, options);
             }
         });
         return summary;
+    }
+
+    Summary list_pairs(const Input& input, const Options& options) {
+        try {
+            return engine_->find_pairs(input, piece_, options, run_.stop);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::resource_limit) throw;
+            throw in_words_of_command(error);
+        }
     }
 
     /// Returns the objects of a frame that this rank gives to the engine.
@@ -249,6 +263,7 @@ private:
     PairList piece_;
     std::vector<Pair64> wide_piece_;
     std::unique_ptr<PieceOutput> output_;  // null: pairs are only counted
+    OutputRoom room_{run_.request, has_wide_indices(run_) ? sizeof(Pair64) : sizeof(Pair)};
 #ifdef OCTOPAIR_WITH_PIPELINE
     std::optional<RankFilters> filters_;
 #endif

@@ -12,6 +12,7 @@
 #include "cli/detect/frame_search.hpp"
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/output/found_writer.hpp"
+#include "cli/output/output_room.hpp"
 #ifdef OCTOPAIR_WITH_PIPELINE
 #include "cli/input/shaped_set.hpp"
 #include "verification/shapes/stage_check.hpp"
@@ -102,13 +103,18 @@ public:
 
 private:
     void find(std::uint64_t frame) {
-        const Options options = run_.call_options(frame);
+        Options options = run_.call_options(frame);
         if (filters_ != nullptr) return find_collisions(frame, options);
+        if (writer_ != nullptr) options.max_pairs = room_.max_pairs();
         const double written_before = run_.report.seconds.write;
         const Input input(run_.inputs.first.frame(frame),
                           run_.join() ? std::optional(run_.inputs.second.frame(frame)) : std::nullopt);
-        const Summary summary = engine_->stream_pairs(input, pair_sink(), options, run_.stop);
-        run_.report.add(summary, run_.report.seconds.write - written_before);
+        try {
+            const Summary summary = engine_->stream_pairs(input, pair_sink(), options, run_.stop);
+            run_.report.add(summary, run_.report.seconds.write - written_before);
+        } catch (const TooManyPairs& excess) {
+            room_.refuse(excess);
+        }
     }
 
 #ifdef OCTOPAIR_WITH_PIPELINE
@@ -157,6 +163,7 @@ private:
     std::unique_ptr<Engine> engine_;
     std::unique_ptr<FilterChain> filters_;  // null: all pairs are written, without filters
     std::unique_ptr<FoundWriter> writer_;   // null: pairs are only counted
+    OutputRoom room_{run_.request};
 };
 
 class OneProcess final : public SearchGroup {
