@@ -61,6 +61,11 @@ public:
     /// `sink` the pairs are only counted. Throws: as find_pairs().
     Summary stream_pairs(const Input& input, const PairSink& sink, const Options& options = {},
                          std::stop_token stop = {});
+    /// Like stream_pairs(), for a sink that has room for `max_pairs` pairs, for example on a disk. Threads and worker processes notice
+    /// early that there are more: with Order::ascending, before the sink gets a pair. Otherwise it gets at most `max_pairs`.
+    /// Throws: also TooManyPairs (error.hpp) if there are more pairs, after `Options::limit`.
+    Summary stream_at_most(std::uint64_t max_pairs, const Input& input, const PairSink& sink,
+                           const Options& options = {}, std::stop_token stop = {});
     /// Returns the number of pairs, at most `Options::limit`. Stores none of them. Throws: as find_pairs().
     std::uint64_t count_pairs(const Input& input, const Options& options = {}, std::stop_token stop = {});
 

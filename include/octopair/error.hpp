@@ -53,7 +53,7 @@ private:
     ErrorPlace place_;
 };
 
-/// An Error{resource_limit}: the pairs of a call need more than the free memory, or are more than `Options::max_pairs`.
+/// An Error{resource_limit}: the pairs of a call need more than the free memory, or are more than stream_at_most() may pass.
 class TooManyPairs : public Error {
 public:
     TooManyPairs(const std::string& message, std::uint64_t pairs, bool exact)

@@ -29,10 +29,6 @@ struct Options {
     /// Complexity: some microseconds per object, divided among the threads; often ten times the call. Memory of this process that
     /// does not depend on the number of pairs (docs/memory.md).
     bool verify = false;
-    /// Number of pairs for which the caller has room, for example on a disk. A call that would return more fails with TooManyPairs
-    /// (error.hpp). Threads and worker processes notice this early: an ascending stream fails before its sink gets a pair. Other streams
-    /// fail after at most so many pairs. Counts and pipelines ignore this option.
-    std::optional<std::uint64_t> max_pairs = {};
 };
 
 }  // namespace octopair

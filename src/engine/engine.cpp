@@ -29,37 +29,15 @@ void check_set(const Objects& set, const char* name) {
     }
 }
 
-/// The output of a call, with Options::max_pairs as a bound that holds for every engine.
-class BoundedOutput {
-public:
-    /// Borrows `output`.
-    BoundedOutput(const detail::Output& output, std::optional<std::uint64_t> most) : output_(output), most_(most) {
-        if (output.sink == nullptr || !most) return;
-        sink_ = [&sink = *output.sink, left = *most, this](std::span<const Pair> pairs) mutable {
-            if (pairs.size() > left) refuse();
-            left -= pairs.size();
-            sink(pairs);
-        };
-        output_.sink = &sink_;
-    }
-    BoundedOutput(const BoundedOutput&) = delete;
-    BoundedOutput& operator=(const BoundedOutput&) = delete;
-
-    const detail::Output& output() const { return output_; }
-    /// Throws: TooManyPairs if the list has too many pairs.
-    void check_list() const {
-        if (most_ && output_.list != nullptr && output_.list->size() > *most_) refuse();
-    }
-
-private:
-    [[noreturn]] void refuse() const {
-        throw TooManyPairs("more than " + digit_groups(*most_) + " pairs, which is Options::max_pairs", *most_, false);
-    }
-
-    detail::Output output_;
-    std::optional<std::uint64_t> most_;
-    PairSink sink_;
-};
+/// Returns a sink that refuses more than `most` pairs: a bound that holds for every engine. Borrows `sink`.
+PairSink bounded(const PairSink& sink, std::uint64_t most) {
+    return [&sink, most, left = most](std::span<const Pair> pairs) mutable {
+        if (pairs.size() > left)
+            throw TooManyPairs("more than " + digit_groups(most) + " pairs, the largest number allowed", most, false);
+        left -= pairs.size();
+        sink(pairs);
+    };
+}
 
 }  // namespace
 
@@ -101,13 +79,9 @@ Summary Engine::call(const detail::Request& request, const detail::Output& outpu
     try {
         const ProgressSink progress = detail::callback_of(own, request.options.progress);
         const detail::Control control{stop, progress};
-        const BoundedOutput bounded(output, request.options.max_pairs);
-        const auto search = [this](const auto&... call) { return run(call...); };
-        const Summary summary = request.options.verify ? detail::VerifiedCall{request, bounded.output(), control}.run(
-                                                             verification_threads(), search)
-                                                       : run(request, bounded.output(), control);
-        bounded.check_list();
-        return summary;
+        if (!request.options.verify) return run(request, output, control);
+        return detail::VerifiedCall{request, output, control}.run(verification_threads(),
+                                                                  [this](const auto&... call) { return run(call...); });
     } catch (const std::bad_alloc&) {
         if (output.list != nullptr) detail::storage_of(*output.list).release();
         throw Error(ErrorCode::resource_limit, "out of memory");
@@ -126,6 +100,13 @@ Summary Engine::find_pairs(const Input& input, PairList& pairs, const Options& o
 
 Summary Engine::stream_pairs(const Input& input, const PairSink& sink, const Options& options, std::stop_token stop) {
     return call(detail::request_of(input, options), {.sink = sink ? &sink : nullptr}, stop);
+}
+
+Summary Engine::stream_at_most(std::uint64_t max_pairs, const Input& input, const PairSink& sink,
+                               const Options& options, std::stop_token stop) {
+    if (!sink) return stream_pairs(input, sink, options, stop);
+    const PairSink most = bounded(sink, max_pairs);
+    return call(detail::request_of(input, options), {.sink = &most, .max_pairs = max_pairs}, stop);
 }
 
 std::uint64_t Engine::count_pairs(const Input& input, const Options& options, std::stop_token stop) {

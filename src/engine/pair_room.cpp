@@ -23,8 +23,8 @@ std::string text_of(const PairCount& count) {
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): the parameters of a call, and what its engine can do.
-PairRoom::PairRoom(const Options& options, detail::PairStorage* list, const Progress& progress, bool forecasts)
-    : options_(options),
+PairRoom::PairRoom(const Bounds& bounds, detail::PairStorage* list, const Progress& progress, bool forecasts)
+    : bounds_(bounds),
       list_(list),
       progress_(progress),
       forecasts_(forecasts),
@@ -55,14 +55,14 @@ std::optional<std::uint64_t> PairRoom::most_in_memory() const {
 /// Forecasts from the pairs of the scanned part of the octree whether all pairs are more than `most`. A crowded octant can make the
 /// forecast wrong, because its pairs are found before it counts as scanned.
 bool PairRoom::will_exceed(std::uint64_t pairs, std::uint64_t most) const {
-    if (options_.limit && *options_.limit <= most) return false;
+    if (bounds_.limit && *bounds_.limit <= most) return false;
     return pairs >= std::min(tuning().output.forecast_pairs, most / 8) &&
            double(pairs) > progress_.of_stage() * double(most);
 }
 
 bool PairRoom::is_doubtful(std::uint64_t pairs) {
     if (!forecasts_) return false;
-    if (options_.max_pairs && will_exceed(pairs, *options_.max_pairs)) return true;
+    if (bounds_.max_pairs && will_exceed(pairs, *bounds_.max_pairs)) return true;
     if (list_ == nullptr || pairs < next_forecast_) return false;
     next_forecast_ = pairs + tuning().output.checked_step / sizeof(Pair);
     const std::optional<std::uint64_t> room = most_in_memory();
@@ -96,18 +96,18 @@ void PairRoom::check_memory(std::uint64_t pairs, std::uint64_t bytes) {
 
 CountLimit PairRoom::count_limit() const {
     const std::uint64_t in_memory = list_ != nullptr ? most_in_memory().value_or(unbounded) : unbounded;
-    const std::uint64_t room = std::min(in_memory, options_.max_pairs.value_or(unbounded));
+    const std::uint64_t room = std::min(in_memory, bounds_.max_pairs.value_or(unbounded));
     const std::chrono::duration<double> longest(tuning().output.counting_seconds);
     return {room, CountLimit::Clock::now() + std::chrono::duration_cast<CountLimit::Clock::duration>(longest)};
 }
 
 void PairRoom::require(PairCount all) {
     forecasts_ = false;
-    const std::uint64_t limit = options_.limit.value_or(unbounded);
+    const std::uint64_t limit = bounds_.limit.value_or(unbounded);
     const PairCount count{std::min(all.pairs, limit), all.exact || all.pairs >= limit};
-    if (options_.max_pairs && count.exceeds(*options_.max_pairs)) {
-        throw TooManyPairs(text_of(count) + "; Options::max_pairs is " + digit_groups(*options_.max_pairs), count.pairs,
-                           count.exact);
+    if (bounds_.max_pairs && count.exceeds(*bounds_.max_pairs)) {
+        throw TooManyPairs(text_of(count) + "; at most " + digit_groups(*bounds_.max_pairs) + " are allowed",
+                           count.pairs, count.exact);
     }
     if (list_ == nullptr || count.pairs < tuning().output.unchecked_bytes / sizeof(Pair)) return;
     const std::optional<std::uint64_t> most = most_in_memory();

@@ -1,5 +1,5 @@
 // PairRoom: compares the number of pairs of a call with what its receiver has room for, so that a call whose result cannot fit fails early.
-// The room is Options::max_pairs and, for a list, the memory that this process can still get.
+// The room is Output::max_pairs and, for a list, the memory that this process can still get.
 //
 // 1. While pairs are found, a forecast compares them with the part of the octree that was scanned. If all pairs may be too many, the
 //    engine abandons the scan and counts the pairs, which is many times faster and takes no memory.
@@ -25,16 +25,20 @@ inline constexpr const char* list_advice = "; use count_pairs, limit or stream_p
 /// Thread safety: one thread at a time. The list calls its part of this object from any thread, but from one at a time.
 class OCTOPAIR_PRIVATE_EXPORT PairRoom {
 public:
+    /// Bounds on the number of pairs: Options::limit, and Output::max_pairs.
+    struct Bounds {
+        std::optional<std::uint64_t> limit, max_pairs = {};
+    };
     /// Watches the list's blocks of memory until destruction. `list`: null for a sink. `forecasts`: false for an engine that cannot scan
     /// again. Borrows the other arguments.
-    PairRoom(const Options& options, detail::PairStorage* list, const Progress& progress, bool forecasts = true);
+    PairRoom(const Bounds& bounds, detail::PairStorage* list, const Progress& progress, bool forecasts = true);
     ~PairRoom();
     PairRoom(const PairRoom&) = delete;
     PairRoom& operator=(const PairRoom&) = delete;
 
     /// Returns true if the engine can still abandon the scan that fills the list, to count the pairs. A receiver fills a list with a limit
     /// and calls is_doubtful().
-    bool can_count() const { return forecasts_ && list_ != nullptr && !options_.limit; }
+    bool can_count() const { return forecasts_ && list_ != nullptr && !bounds_.limit; }
     /// Must be called before check(), require() and count_limit() if the pairs of the list are in memory that the engine has mapped. `bytes`:
     /// memory that they have; `most`: bytes that are mapped for them.
     void hold(std::uint64_t bytes, std::uint64_t most);
@@ -57,7 +61,7 @@ private:
     void grow(std::uint64_t bytes);
     void check_memory(std::uint64_t pairs, std::uint64_t bytes);
 
-    const Options& options_;
+    const Bounds bounds_;
     detail::PairStorage* const list_;
     const Progress& progress_;
     bool forecasts_;

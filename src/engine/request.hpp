@@ -23,6 +23,7 @@ struct Request {
 struct Output {
     PairList* list = nullptr;
     const PairSink* sink = nullptr;
+    std::optional<std::uint64_t> max_pairs = {};  ///< pairs for which the sink has room; nothing: no bound
 };
 
 /// Returns the request for an input. Borrows both arguments.

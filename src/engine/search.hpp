@@ -56,7 +56,7 @@ private:
         if (call.output.list == nullptr && call.output.sink == nullptr) return count(call);
         detail::PairStorage* const list_storage =
             call.output.list != nullptr ? &detail::storage_of(*call.output.list) : nullptr;
-        PairRoom room(call.request.options, list_storage, call.progress);
+        PairRoom room({call.request.options.limit, call.output.max_pairs}, list_storage, call.progress);
         call.room = &room;
         if (list_storage != nullptr && !call.request.options.limit) {
             list(call, *list_storage, octal);

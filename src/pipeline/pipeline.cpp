@@ -255,7 +255,6 @@ private:
     static void filter(const Flow::Setup& setup, const Search& search, PipelineSummary& summary) {
         Options options = setup.options;
         options.limit.reset();
-        options.max_pairs.reset();
         options.buffer_bytes -= std::min(options.buffer_bytes, Flow::held_pairs(setup) * sizeof(Pair));
         if (setup.options.progress) {
             // Progress 1 is reported when the filters have processed all pairs.

@@ -41,11 +41,11 @@ private:
 class Room : public ::testing::TestWithParam<unsigned> {
 protected:
     /// Returns the TooManyPairs of a stream. Counts the delivered pairs.
-    TooManyPairs refused(const std::vector<Box3f>& boxes, const Options& options) {
+    TooManyPairs refused(std::uint64_t most, const std::vector<Box3f>& boxes, const Options& options) {
         delivered_ = 0;
         try {
-            engine_->stream_pairs(
-                objects_of(boxes), [&](std::span<const Pair> pairs) { delivered_ += pairs.size(); }, options);
+            engine_->stream_at_most(
+                most, objects_of(boxes), [&](std::span<const Pair> pairs) { delivered_ += pairs.size(); }, options);
         } catch (const TooManyPairs& excess) {
             EXPECT_EQ(excess.code(), ErrorCode::resource_limit);
             return excess;
@@ -65,8 +65,8 @@ TEST_P(Room, AnAscendingStreamIsRefusedBeforeItsFirstPair) {
     const auto boxes = coincident(2000);  // 1,999,000 pairs
     // The pairs fit into the larger buffer, and are counted ahead if they do not.
     for (const std::uint64_t buffer : {1u << 30, 1u << 20}) {
-        const TooManyPairs excess = refused(boxes, {.buffer_bytes = buffer, .max_pairs = 1'998'999});
-        EXPECT_STREQ(excess.what(), "1,999,000 pairs; Options::max_pairs is 1,998,999");
+        const TooManyPairs excess = refused(1'998'999, boxes, {.buffer_bytes = buffer});
+        EXPECT_STREQ(excess.what(), "1,999,000 pairs; at most 1,998,999 are allowed");
         EXPECT_TRUE(excess.exact());
         EXPECT_EQ(excess.pairs(), 1'999'000u);
         EXPECT_EQ(delivered_, 0u);
@@ -75,7 +75,7 @@ TEST_P(Room, AnAscendingStreamIsRefusedBeforeItsFirstPair) {
 
 TEST_P(Room, AnOctalStreamIsCountedWhenItGrows) {
     const auto boxes = coincident(2000);
-    const TooManyPairs excess = refused(boxes, {.order = Order::octal, .max_pairs = 400'000});
+    const TooManyPairs excess = refused(400'000, boxes, {.order = Order::octal});
     EXPECT_TRUE(excess.exact());
     EXPECT_EQ(excess.pairs(), 1'999'000u);
     EXPECT_LE(delivered_, 400'000u);
@@ -88,7 +88,7 @@ TEST_P(Room, ManyMorePairsAreNotAllCounted) {
     test_hooks().tuning.output.counting_seconds = 0;
     const auto boxes = coincident(6000);  // 17,997,000 pairs, in several shares
     for (const Order order : orders) {
-        const TooManyPairs excess = refused(boxes, {.order = order, .buffer_bytes = 1 << 20, .max_pairs = 300'000});
+        const TooManyPairs excess = refused(300'000, boxes, {.order = order, .buffer_bytes = 1 << 20});
         EXPECT_FALSE(excess.exact());
         EXPECT_GE(excess.pairs(), 300'000u);
         EXPECT_LT(excess.pairs(), 17'996'999u);
@@ -106,26 +106,16 @@ TEST_P(Room, WhatFitsIsDelivered) {
     for (const Order order : orders) {
         for (const std::uint64_t most : {1'999'000u, 2'500'000u}) {
             for (const std::uint64_t buffer : {1u << 30, 1u << 20}) {
-                const Options options{.order = order, .buffer_bytes = buffer, .max_pairs = most};
-                const std::vector<Pair> pairs = streamed_pairs(*engine_, objects_of(boxes), options);
+                std::vector<Pair> pairs;
+                engine_->stream_at_most(most, objects_of(boxes), append_to(pairs),
+                                        {.order = order, .buffer_bytes = buffer});
                 EXPECT_EQ(pairs, listed_pairs(*engine_, objects_of(boxes), {.order = order}));
             }
         }
-        const Options limited{.order = order, .limit = 1000, .max_pairs = 1000};
-        EXPECT_EQ(streamed_pairs(*engine_, objects_of(boxes), limited).size(), 1000u);
-        EXPECT_EQ(engine_->count_pairs(objects_of(boxes), {.max_pairs = 5}), 1'999'000u);
-    }
-}
-
-TEST_P(Room, OfAListIsBoundedToo) {
-    const auto boxes = coincident(100);
-    PairList list;
-    for (const Order order : orders) {
-        expect_error(ErrorCode::resource_limit, "max_pairs",
-                     [&] { engine_->find_pairs(objects_of(boxes), list, {.order = order, .max_pairs = 4949}); });
-        EXPECT_EQ(list.size(), 0u);
-        engine_->find_pairs(objects_of(boxes), list, {.order = order, .max_pairs = 4950});
-        EXPECT_EQ(list.size(), 4950u);
+        std::vector<Pair> first;
+        engine_->stream_at_most(1000, objects_of(boxes), append_to(first), {.order = order, .limit = 1000});
+        EXPECT_EQ(first.size(), 1000u);
+        EXPECT_EQ(engine_->stream_at_most(5, objects_of(boxes), {}).pairs, 1'999'000u);  // only counted
     }
 }
 

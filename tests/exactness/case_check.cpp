@@ -43,13 +43,18 @@ struct Call {
     }
     Summary stream(Engine& engine, std::vector<Pair>& found) {
         options.buffer_bytes = asked.buffer_bytes;
-        found.clear();
-        const PairSink sink = [&](std::span<const Pair> batch) {
-            found.insert(found.end(), batch.begin(), batch.end());
-        };
-        return engine.stream_pairs(asked.input(), sink, options);
+        return engine.stream_pairs(asked.input(), into(found), options);
+    }
+    Summary stream_at_most(std::uint64_t most, Engine& engine, std::vector<Pair>& found) {
+        options.buffer_bytes = asked.buffer_bytes;
+        return engine.stream_at_most(most, asked.input(), into(found), options);
     }
     std::uint64_t count(Engine& engine) const { return engine.count_pairs(asked.input(), options); }
+
+    static PairSink into(std::vector<Pair>& found) {
+        found.clear();
+        return [&](std::span<const Pair> batch) { found.insert(found.end(), batch.begin(), batch.end()); };
+    }
 };
 
 /// Makes the calls on a case. Throws the first Finding.
@@ -103,14 +108,12 @@ public:
     }
 
 private:
-    /// A stream with Options::max_pairs delivers all pairs, or fails if they are more. An error that has the number of pairs has the right
+    /// Engine::stream_at_most() delivers all pairs, or fails if they are more. An error that has the number of pairs has the right
     /// number.
     void check_bounded(Order order) {
         std::vector<Pair> found;
-        Call call = Call(case_).in(order);
-        call.options.max_pairs = case_.limit;
         try {
-            (void)call.stream(engine(1), found);
+            (void)Call(case_).in(order).stream_at_most(case_.limit, engine(1), found);
             expect_bytes("bounded stream", found, all(order));
         } catch (const TooManyPairs& excess) {
             const std::uint64_t pairs = all(order).size();

@@ -115,16 +115,6 @@ TEST_P(AnyPipeline, LimitsWhatComesOut) {
     }
 }
 
-TEST_P(AnyPipeline, IgnoresTheMaximumNumberOfPairs) {
-    const auto boxes = samples::make_scene("dense", 60, 3);
-    const auto engine = make_local_engine(2);
-    Options asked = options();
-    asked.max_pairs = 0;
-    Outcome found;
-    (void)two_filters(GetParam().threads).run(*engine, all_of(boxes), into(found), asked);
-    expect_same(found, expected_of(engine_pairs(boxes, GetParam().order)));
-}
-
 TEST_P(AnyPipeline, JoinsTwoSets) {
     const auto first = samples::make_scene("dense", 3000, 1), second = samples::make_scene("dense", 2000, 2);
     Options asked = options();

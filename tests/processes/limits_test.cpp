@@ -162,15 +162,15 @@ TEST_F(WorkerLimits, OfTheRoomOfAStream) {
         std::uint64_t delivered = 0;
         const PairSink sink = [&](std::span<const Pair> pairs) { delivered += pairs.size(); };
         for (const std::uint64_t most : {100'000u, 400'000u, 1'998'999u}) {
-            Options options{.order = order, .buffer_bytes = 1 << 20, .max_pairs = most};
+            const Options options{.order = order, .buffer_bytes = 1 << 20};
             const std::string message = error_of(ErrorCode::resource_limit, [&] {
-                engine->stream_pairs(Objects{boxes, {}}, sink, options);
+                engine->stream_at_most(most, Objects{boxes, {}}, sink, options);
             });
-            EXPECT_TRUE(has_text(message, "1,999,000 pairs; Options::max_pairs is "));
+            EXPECT_TRUE(has_text(message, "1,999,000 pairs; at most "));
         }
         EXPECT_LE(delivered, order == Order::ascending ? 0u : 2'498'999u);
         delivered = 0;
-        engine->stream_pairs(Objects{boxes, {}}, sink, {.order = order, .max_pairs = 1'999'000});
+        engine->stream_at_most(1'999'000, Objects{boxes, {}}, sink, {.order = order});
         EXPECT_EQ(delivered, 1'999'000u);
     }
 }

@@ -103,14 +103,15 @@ public:
 
 private:
     void find(std::uint64_t frame) {
-        Options options = run_.call_options(frame);
+        const Options options = run_.call_options(frame);
         if (filters_ != nullptr) return find_collisions(frame, options);
-        if (writer_ != nullptr) options.max_pairs = room_.max_pairs();
+        const std::optional<std::uint64_t> most = writer_ != nullptr ? room_.max_pairs() : std::nullopt;
         const double written_before = run_.report.seconds.write;
         const Input input(run_.inputs.first.frame(frame),
                           run_.join() ? std::optional(run_.inputs.second.frame(frame)) : std::nullopt);
         try {
-            const Summary summary = engine_->stream_pairs(input, pair_sink(), options, run_.stop);
+            const Summary summary = most ? engine_->stream_at_most(*most, input, pair_sink(), options, run_.stop)
+                                         : engine_->stream_pairs(input, pair_sink(), options, run_.stop);
             run_.report.add(summary, run_.report.seconds.write - written_before);
         } catch (const TooManyPairs& excess) {
             room_.refuse(excess);

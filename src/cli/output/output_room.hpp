@@ -18,7 +18,7 @@ public:
     explicit OutputRoom(const DetectRequest& request, std::size_t pair_bytes = sizeof(Pair))
         : request_(request), pair_bytes_(pair_bytes) {}
 
-    /// Returns the maximum number of pairs of the next frame, for Options::max_pairs. Returns nothing if there is no bound, as for
+    /// Returns the maximum number of pairs of the next frame, for Engine::stream_at_most(). Returns nothing if there is no bound, as for
     /// standard output, or if it is unknown. Results below 256 MiB are not bounded: a write that fails reports the error soon enough.
     std::optional<std::uint64_t> max_pairs();
     /// Throws: Error{resource_limit} that says how many bytes the pairs need, and how many they can have. Requires: max_pairs() returned

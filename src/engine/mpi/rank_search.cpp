@@ -347,7 +347,7 @@ void RankSearch::find_octal(RankCall& rank_call, Call& call) {
         run_pass(rank_call, [&] {
             build_first();
             const CostMeter meter(comm_, costs_.scan);
-            const PairRoom room(call.request.options, &list, call.progress, false);
+            const PairRoom room({call.request.options.limit}, &list, call.progress, false);
             passes_.list_octal(call, list, 1);
         });
         drop_refused(rank_call, list);
@@ -396,7 +396,7 @@ void RankSearch::find_ascending(RankCall& rank_call, Call& call) {
         const CostMeter meter(comm_, costs_.scan);
         detail::PairStorage& list = detail::storage_of(*rank_call.output.list);
         const std::uint64_t rows = rank_call.joint.totals[0];
-        const PairRoom room(call.request.options, &list, call.progress, false);
+        const PairRoom room({call.request.options.limit}, &list, call.progress, false);
         passes_.list_ascending(call, list, {{0, rows}, rank_call.joint.columns()}, 1);
         (void)octopair::allowed({list.size}, 0, rank_call.request.options, rank_call.summary);
         return;
@@ -449,7 +449,7 @@ private:
 bool RankSearch::list_octal(Call& call, std::optional<std::uint64_t> most) {
     constexpr double listed = 0.8;  // progress after the scan
     if (!most) {
-        const PairRoom room(call.request.options, &detail::storage_of(found_), call.progress, false);
+        const PairRoom room({call.request.options.limit}, &detail::storage_of(found_), call.progress, false);
         passes_.list_octal(call, detail::storage_of(found_), listed);
         return true;
     }
