@@ -71,17 +71,21 @@ Box3d BoxSource::box(std::uint32_t object, double& padding) const {
 }
 
 bool BoxSource::is_pair(std::uint32_t a, std::uint32_t b) const {
-    if (plain_wide_first_ != nullptr) {
-        const auto plain = [&](std::uint32_t object) -> const Box3d& {
-            return object < first_size_ ? plain_wide_first_[object] : plain_wide_second_[object - first_size_];
-        };
-        return within_reach(plain(a), plain(b), form_.rounding.margin);
-    }
     double padding_a = 0;
     double padding_b = 0;
     const Box3d box_a = box(a, padding_a);
     const Box3d box_b = box(b, padding_b);
     return within_reach(box_a, box_b, form_.rounding.margin + (padding_a + padding_b));
+}
+
+std::uint32_t BoxSource::pairs_with(const std::uint32_t* objects, std::uint32_t other, std::uint32_t asked) const {
+    if (plain_wide_first_ == nullptr) return EntrySource::pairs_with(objects, other, asked);
+    const auto plain = [&](std::uint32_t object) -> const Box3d& {
+        return object < first_size_ ? plain_wide_first_[object] : plain_wide_second_[object - first_size_];
+    };
+    const Box3d box = plain(other);
+    const double margin = form_.rounding.margin;
+    return kept_bits(asked, [&](unsigned i) { return within_reach(plain(objects[i]), box, margin); });
 }
 
 std::size_t BoxSource::refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const {

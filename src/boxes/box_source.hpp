@@ -46,6 +46,7 @@ public:
     RoundingSlack slack() const override;
     /// Evaluates the pair rule of octopair/objects.hpp in float64.
     bool is_pair(std::uint32_t a, std::uint32_t b) const override;
+    std::uint32_t pairs_with(const std::uint32_t* objects, std::uint32_t other, std::uint32_t asked) const override;
     std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const override;
     void load_bounds(std::span<Entry> entries) const override;
 
@@ -67,7 +68,7 @@ private:
     std::size_t first_size_;
     std::size_t second_size_;
     EntryForm form_;
-    // Boxes of the sets if all are float64 without padding; otherwise null. is_pair() reads these boxes in place.
+    // Boxes of the sets if all are float64 without padding; otherwise null. pairs_with() reads these boxes in place.
     const Box3d* plain_wide_first_ = nullptr;
     const Box3d* plain_wide_second_ = nullptr;
 };

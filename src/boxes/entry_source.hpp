@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -66,6 +67,10 @@ public:
     virtual RoundingSlack slack() const = 0;
     /// True if the caller's own boxes, before any rounding, are a pair.
     virtual bool is_pair(std::uint32_t a, std::uint32_t b) const = 0;
+    /// Returns the bits i of `asked` for which is_pair(objects[i], other). A class that overrides is_pair() need not override this function.
+    virtual std::uint32_t pairs_with(const std::uint32_t* objects, std::uint32_t other, std::uint32_t asked) const {
+        return kept_bits(asked, [&](unsigned i) { return is_pair(objects[i], other); });
+    }
     /// Writes the positions of the doubtful pairs that fail the test is_pair() to `out`, in the same order, and returns their number.
     /// Requires: `out` has room for all positions.
     virtual std::size_t refused(const DoubtfulPairs& doubtful, std::uint32_t* out) const = 0;
@@ -75,6 +80,16 @@ public:
     virtual bool has_all_bounds() const { return true; }
 
 protected:
+    /// Returns the bits i of `asked` for which keep(i) is true.
+    template <typename Keep>
+    static std::uint32_t kept_bits(std::uint32_t asked, Keep&& keep) {
+        std::uint32_t kept = 0;
+        for (std::uint32_t rest = asked; rest != 0; rest &= rest - 1) {
+            const auto bit = unsigned(std::countr_zero(rest));
+            kept |= std::uint32_t(keep(bit)) << bit;
+        }
+        return kept;
+    }
     /// Does what refused() does, with a call of is_pair() for each pair in doubt.
     std::size_t refused_one_by_one(const DoubtfulPairs& doubtful, std::uint32_t* out) const {
         std::size_t count = 0;

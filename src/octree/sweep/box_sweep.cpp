@@ -99,10 +99,12 @@ void BoxPairMaker::drop_refused(const BoxSweep& sweep, const Depths& depths, std
     const std::span<BoxHits> doubtful = std::span(doubtful_).first(hits.size());
     judge_hits(sweep, hits, depths, doubtful);
     for (std::size_t i = 0; i < hits.size(); ++i) {
-        filter(hits[i], doubtful[i].bits(), [&](std::size_t row, std::size_t column) {
-            count_path(Path::hit_settled);
-            return context_.source.is_pair(sweep.rows.object()[row], sweep.columns.object()[column]);
-        });
+        const std::uint32_t asked = doubtful[i].bits();
+        if (asked == 0) continue;
+        count_path(Path::hit_settled);
+        const std::uint32_t* const rows = sweep.rows.object() + hits[i].first_row();
+        const std::uint32_t column = sweep.columns.object()[hits[i].column()];
+        hits[i].keep(~asked | context_.source.pairs_with(rows, column, asked));
     }
 }
 

@@ -46,6 +46,9 @@ public:
         tick();
         return source().float32_boxes(begin, room);
     }
+    std::uint32_t pairs_with(const std::uint32_t* objects, std::uint32_t other, std::uint32_t asked) const override {
+        return source().pairs_with(objects, other, asked);
+    }
 
 private:
     void tick() const {
