@@ -53,7 +53,8 @@ class Progress:
         pip = pathlib.Path(f"/proc/{os.getppid()}")
         try:
             words = (pip / "cmdline").read_text(errors="replace").split("\0")
-            if "PIP_BUILD_TRACKER" in os.environ and not any(re.fullmatch("-[qv]+|--quiet|--verbose", word) for word in words):
+            quiet = {"PIP_QUIET", "PIP_VERBOSE"} & os.environ.keys()
+            if "PIP_BUILD_TRACKER" in os.environ and not quiet and not any(re.fullmatch("-[qv]+|--quiet|--verbose", word) for word in words):
                 # Without O_NONBLOCK, the build would wait for a program that does not read the pipe.
                 self.open(os.open(pip / "fd/2", os.O_WRONLY | os.O_NOCTTY | os.O_NONBLOCK))
         except OSError:

@@ -102,9 +102,11 @@ def array_of(value: Any, name: str) -> Array:
             return np.asarray(value)
         if hasattr(value, "__dlpack__"):
             return np.from_dlpack(value)
-        if hasattr(value, "__array__") or isinstance(value, collections.abc.Sequence):
+        if hasattr(value, "__array__"):
             return np.asarray(value)
-    except MemoryError:
+        if isinstance(value, collections.abc.Sequence):
+            return _array_of_sequence(value, name)
+    except (MemoryError, InputError):
         raise
     except Exception as error:
         raise InputTypeError(f"{name}: NumPy cannot read this {type(value).__name__}: {error}") from error
@@ -113,6 +115,19 @@ def array_of(value: Any, name: str) -> Array:
         return np.asarray(memoryview(buffer))
     except TypeError:
         raise InputTypeError(f"{name}: a {type(value).__name__} is not an array; pass an array or a list of rows") from None
+
+
+def _array_of_sequence(value: Any, name: str) -> Array:
+    """Returns the numbers of a sequence. NumPy rounds the integers of a sequence that also has floats."""
+    array = np.asarray(value)
+    if array.dtype.kind == "f" and array.size:
+        large = np.flatnonzero(np.abs(array.reshape(-1)) >= 2.0 ** (np.finfo(array.dtype).nmant + 1))
+        exact = np.asarray(value, dtype=object).reshape(-1) if len(large) else array
+        for i in large:
+            number = exact[i]
+            if isinstance(number, (int, np.integer)) and int(array.reshape(-1)[i]) != int(number):
+                _refuse_number(np.reshape(exact, array.shape), name, int(i), f"{array.dtype.name} does not have this number")
+    return array
 
 
 def _shape_text(shape: Sequence[Optional[int]]) -> str:
@@ -193,11 +208,9 @@ def integers(value: Any, name: str, shape: Sequence[Optional[int]], dtype: Any =
     if array.dtype == kind or not array.size:
         return contiguous(array.astype(kind, copy=False))
     if array.dtype.kind == "f":
-        with np.errstate(invalid="ignore"):
-            found = array.astype(kind)
-        wrong = _first_change(array, found)
-        if wrong is None and np.isnan(array).any():
-            wrong = int(np.flatnonzero(np.isnan(array).reshape(-1))[0])
+        inside = (array >= 0) & (array < 2.0 ** (8 * kind.itemsize))  # False for a NaN
+        found = np.where(inside, array, 0).astype(kind)
+        wrong = _first_change(array, found) if inside.all() else int(np.flatnonzero(~inside.reshape(-1))[0])
         if wrong is not None:
             _refuse_number(array, name, wrong, f"it must be an integer from 0 to {np.iinfo(kind).max}")
         if copy:
@@ -234,6 +247,8 @@ def column(value: Any, name: str, size: int, dtype: Any, copy: bool = False) -> 
     kind = np.dtype(dtype)
     if isinstance(value, (bool, int, float, np.generic)):
         number = np.asarray(value)
+        if kind.kind == "f" and number.dtype.kind in "iuf":
+            return np.full(size, floats_of(number.reshape(1), name, kind, copy))
         if not np.can_cast(number, kind, "safe") and not (kind.kind == "u" and number.dtype.kind in "iu" and number >= 0):
             raise InputTypeError(f"{name}: {value!r} is not a number of the dtype {kind.name}")
         if kind.kind == "u" and number > np.iinfo(kind).max:

@@ -22,8 +22,13 @@ else:
     class _Columns(Mapping, dict):
         """A read-only mapping that is also a dict, because pandas makes columns only of dicts.
 
-        The dict has no items of its own. So everything that would read or change them is defined here, or by Mapping.
+        The values of the dict itself are None. So everything that would read or change them is defined here, or by Mapping. The names are
+        in the dict, because functions of C ask it whether it is empty.
         """
+
+        def __post_init__(self):
+            for name in self:
+                dict.__setitem__(self, name, None)
 
         def _refuse(self, *_: object, **__: object) -> NoReturn:
             raise InputTypeError("a table of collisions does not change; dict(table) and table.to_pandas() return copies of its columns")

@@ -190,7 +190,10 @@ class Job:
             functions, self._callbacks = self._callbacks, []
             self._called_back = True
         for function in functions:
-            self._call(function)
+            try:
+                self._call(function)
+            except BaseException:  # SystemExit of a function ends neither the others nor the thread
+                self._log_failure()
 
     def _call(self, function: Callable[[Job], Any]) -> None:
         try:
@@ -242,26 +245,27 @@ class _Watcher:
     def watch(self, job: Job) -> bool:
         """Calls ``job._call_back()`` when the job ends. Returns False if the job is ending or has ended."""
         with self._lock:
+            if self._thread is None:
+                thread = threading.Thread(target=self._run, name="octopair callbacks", daemon=True)
+                thread.start()
+                self._thread = thread
             number = next(self._numbers)
             self._jobs[number] = job
-            watched = False
-            try:
-                watched = job._job.watch(number)
-                if watched and self._thread is None:
-                    thread = threading.Thread(target=self._run, name="octopair callbacks", daemon=True)
-                    thread.start()
-                    self._thread = thread
-            finally:
-                if not watched:
-                    del self._jobs[number]
+            watched = job._job.watch(number)
+            if not watched:
+                del self._jobs[number]
             return watched
 
     def _run(self) -> None:
         while True:
-            job = self._jobs.pop(_core.next_ended_job())
+            try:
+                number = _core.next_ended_job()
+            except UsageError:  # the process was forked, which watch() says
+                return
+            job = self._jobs.pop(number)
             try:
                 job._call_back()
-            except BaseException:  # SystemExit of a callback does not end the thread
+            except BaseException:  # nothing ends the thread
                 job._log_failure()
             del job
 

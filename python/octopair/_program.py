@@ -76,7 +76,8 @@ def _option(name: str, value: Any) -> List[str]:
     flag = "--" + name.replace("_", "-")
     if value is None or value is False:
         return []
-    return [flag] if value is True else [flag, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
+    # In one argument, a path that begins with a dash is not an option.
+    return [flag if value is True else f"{flag}={os.fspath(value) if isinstance(value, os.PathLike) else value}"]
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)

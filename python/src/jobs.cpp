@@ -1,6 +1,6 @@
 // Job: a search that runs while Python does other work. Stream: the pairs of a search in chunks, as an iterator.
 //
-// A thread of Python runs the callbacks of all jobs (octopair/_engine.py). It waits for the jobs that it watches, without polling: a job
+// A thread of Python runs the callbacks of all jobs (octopair/_jobs.py). It waits for the jobs that it watches, without polling: a job
 // destroys its progress function when it ends, and this tells the thread.
 #include <chrono>
 #include <condition_variable>

@@ -46,8 +46,9 @@ public:
     /// Queries: boxes (n, 6), spheres (n, 4: centre and radius), rays (n, 7: origin, direction, longest), all float64.
     py::tuple overlaps(const py::array& queries, std::uint32_t groups) {
         const auto find = [&](auto rows) {
-            return answers_of<std::uint32_t>(
-                [&](const std::stop_token& stop, auto& answers) { scene().overlaps(rows, answers, groups, stop); });
+            return answers_of<std::uint32_t>(rows.size(), [&](const std::stop_token& stop, auto& answers) {
+                scene().overlaps(rows, answers, groups, stop);
+            });
         };
         Answers<std::uint32_t> answers =
             queries.shape(1) == 4 ? find(rows_of<Sphere, double>(queries)) : find(rows_of<Box3d, double>(queries));
@@ -60,7 +61,7 @@ public:
             return all ? scene().all_hits(rows, answers, groups, stop)
                        : scene().first_hits(rows, answers, groups, stop);
         };
-        return columns_of(answers_of<RayHit>(find), &RayHit::along);
+        return columns_of(answers_of<RayHit>(rows.size(), find), &RayHit::along);
     }
     py::tuple nearest(const py::array& places, const py::tuple& limits, std::uint32_t groups) {
         const auto rows = rows_of<Box3d, double>(places);
@@ -68,7 +69,7 @@ public:
         const auto find = [&](const std::stop_token& stop, Answers<Neighbor>& answers) {
             scene().nearest(rows, most, answers, groups, stop);
         };
-        return columns_of(answers_of<Neighbor>(find), &Neighbor::distance);
+        return columns_of(answers_of<Neighbor>(rows.size(), find), &Neighbor::distance);
     }
 
     /// Returns (boxes, exists): a copy of the boxes by index, and whether there is an object at each index.
@@ -95,11 +96,11 @@ private:
         return array;
     }
 
-    /// Calls find(stop, answers), and returns the answers.
+    /// Calls find(stop, answers), which makes a number of queries, and returns the answers.
     template <typename Answer, typename Find>
-    Answers<Answer> answers_of(Find find) {
+    Answers<Answer> answers_of(std::size_t queries, Find find) {
         Answers<Answer> answers;
-        run_until_stopped([&](const std::stop_token& stop) { find(stop, answers); });
+        run_until_stopped([&](const std::stop_token& stop) { find(stop, answers); }, queries);
         return answers;
     }
 };

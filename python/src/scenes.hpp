@@ -150,12 +150,14 @@ protected:
         const Unlocked unlocked;
         work();
     }
-    /// Runs a call that can be cancelled and repeated. Signal handlers run meanwhile.
+    /// Runs a call that can be cancelled and repeated. Signal handlers run meanwhile. `queries`: number of queries of the call.
     template <typename Work>
-    void run_until_stopped(Work work) {
+    void run_until_stopped(Work work, std::uint64_t queries = 0) {
+        constexpr std::uint64_t objects_per_query = 64;  // whose search takes about as long as a query
         const Turn::Holder turn(turn_);
         check_taken();
-        call({scene().size()}, [&](const std::stop_token& stop, auto&&...) { work(stop); });
+        const std::uint64_t objects = std::max<std::uint64_t>(scene().size(), queries * objects_per_query);
+        call({objects}, [&](const std::stop_token& stop, auto&&...) { work(stop); });
     }
     template <typename Get>
     py::array list(Get find) {

@@ -229,6 +229,16 @@ def test_refuses_numbers_that_would_change(value):
     assert scene.boxes()[:, 3].tolist() == [np.float32(0.1)] * 2
 
 
+def test_refuses_integers_that_would_change_among_floats():
+    for row in ([2**53 + 1, 0, 0, 2.0**54, 1, 1], [0.5, 0, 0, 2**63 + 1, 1, 1]):
+        with pytest.raises(op.InputError, match=r"boxes\[1, [03]\] is \d+; float64 does not have this number"):
+            op.find_pairs([[0] * 6, row])
+    assert op.count_pairs([[2**53 + 2, 0, 0, 2.0**54, 1, 1.5], [2**60, 0, 0, 2**60, 1, 1]]) == 0
+    for padding in (2**53 + 1, np.longdouble("0.1")):
+        with pytest.raises(op.InputError, match="padding.*float64 does not have this number"):
+            op.find_pairs(np.zeros((2, 6)), padding=padding)
+
+
 def test_converts_integers_without_loss():
     boxes = np.array([[2**40, 0, 0, 2**40 + 1, 1, 1], [2**40 + 2, 0, 0, 2**40 + 3, 1, 1]])
     assert op.count_pairs(boxes) == op.count_pairs(boxes, copy=True) == 0

@@ -51,6 +51,8 @@ CALLS = {
                                "while j.state != 'running': time.sleep(0.001)\n            e.find_pairs(np.zeros((10, 6)))",
     "queries": "s = op.Scene(); s.add(np.random.rand(300_000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
                "s.nearest(np.random.rand(100_000, 3), k=2000)",
+    "queries of a small scene": "s = op.Scene(); s.add(np.random.rand(4000, 6).astype(np.float32).cumsum(axis=1)); s.step(); "
+                                "s.overlaps(np.zeros((6_000_000, 6)))",
 }
 
 

@@ -139,6 +139,8 @@ def test_an_exception_of_a_callback_is_logged_and_others_run(slow_engine, caplog
     job = engine.submit(random_boxes(10))
     for each in (slow, job):
         each.add_done_callback(fail)
+    called = []
+    job.add_done_callback(called.append)
     last = engine.submit(random_boxes(10))
     last.add_done_callback(lambda job: ended.set())
     with caplog.at_level(logging.ERROR, "octopair"):
@@ -146,6 +148,7 @@ def test_an_exception_of_a_callback_is_logged_and_others_run(slow_engine, caplog
         assert ended.wait(60)
         slow.add_done_callback(fail)
     assert [record.exc_info[0] for record in caplog.records] == [KeyError, SystemExit, KeyError]
+    assert called == [job]
 
 
 def test_many_jobs_share_one_thread():

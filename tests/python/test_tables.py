@@ -36,6 +36,9 @@ def test_a_table_is_a_mapping_of_columns(table, shapes):
     names = [*COLUMNS[:2], "name_a", "name_b", *COLUMNS[2:]]
     assert list(table) == list(table.keys()) == names and len(table) == len(table.pairs)
     assert isinstance(table, collections.abc.Mapping)
+    with pytest.raises(TypeError, match="not JSON serializable"):
+        json.dumps(table)
+    assert table
     columns = dict(table)
     assert list(columns) == names and columns.keys() == table.keys() == {**table}.keys() == table.columns().keys()
     for name, column in table.items():

@@ -1,5 +1,6 @@
 // Tests queries on large scenes, many queries at the same time, any number of threads, and invalid queries.
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -198,6 +199,32 @@ TEST_P(SceneQueriesTest, EndAfterAStopRequest) {
     check(Answers<RayHit>(), [&](auto& answers, auto stop) { scene.all_hits(rays, answers, groups, stop); });
     check(Answers<Neighbor>(), [&](auto& answers, auto stop) { scene.nearest(boxes, {2}, answers, groups, stop); });
     QueryModel(pool.model, scene, 1).check();
+}
+
+/// Returns the bytes of memory that the program has allocated.
+std::size_t allocated_bytes() {
+    const struct mallinfo2 now = ::mallinfo2();
+    return now.uordblks + now.hblkhd;
+}
+
+TEST(SceneQueries, LargeBuffersAreFreed) {
+    Scene scene({2});
+    const std::vector<Box3f> boxes(1000, Box3f{{0, 0, 0}, {1, 1, 1}});
+    std::vector<ObjectId> ids(boxes.size());
+    scene.add(Objects{boxes}, ids);
+    scene.step();
+    const std::vector<Box3d> queries(8000, Box3d{{0, 0, 0}, {1, 1, 1}});
+    {
+        Answers<std::uint32_t> answers;  // the other memory of queries grows here
+        scene.overlaps(std::span(queries).first(100), answers);
+    }
+    const std::size_t before = allocated_bytes();
+    {
+        Answers<std::uint32_t> answers;
+        scene.overlaps(queries, answers);
+        ASSERT_EQ(answers.all.size(), 8'000'000U);
+    }
+    EXPECT_LT(allocated_bytes(), before + 4 * tuning().scene.max_kept_answers);
 }
 
 TEST(SceneQueries, BadOnesAreRefused) {

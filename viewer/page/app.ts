@@ -134,7 +134,7 @@ export class App {
   }
 
   selectWorst(): void {
-    const worst = this.table.rows[0];
+    const {worst} = this.table;
     if (!this.waitsForWorst || !worst) return;
     void this.selection.select([worst.a, worst.b], worst);
   }
@@ -173,6 +173,7 @@ export class App {
     stage.shapes.setPoses(model.frame.poses);
     if (this.growBounds() && !location.hash.includes('at=')) this.zoomAll();
     this.near.forget();
+    this.selection.frameChanged();
     if (this.selection.objects.length === 1) this.selection.partners = model.partnersOf(this.selection.objects[0]!);
     this.updateFocus();
     this.recolour();

@@ -7,6 +7,9 @@ import {type PairView, SelectionPanel} from './selection_panel.ts';
 import {Missing, type Source, Unreachable} from './source.ts';
 import type {Collision, ObjectInfo, Point} from './types.ts';
 
+// An exported page has the worst rows of a frame, at most so many (max_rows in the program).
+const exportedRows = 1000;
+
 export interface SelectionActions {
   changed(): void;
   clear(): void;
@@ -24,6 +27,8 @@ export class Selection {
   collision: Collision | null = null;
   private readonly panel: SelectionPanel;
   private request = 0;
+  // The frame that `collision` was read for.
+  private frame = 0;
 
   constructor(private readonly source: Source, private readonly model: SceneModel, private readonly actions: SelectionActions) {
     this.panel = new SelectionPanel(model, {...actions, select: objects => void this.select(objects)});
@@ -37,7 +42,14 @@ export class Selection {
   begin(row: Collision): void {
     this.objects = [row.a, row.b];
     this.collision = row;
+    this.frame = this.model.frame.info.frame;
     this.panel.showPair(this.pairView());
+  }
+
+  // Forgets the collision of another frame: its contacts and its depth are not those of this frame, which are read later. The frames of a
+  // running scene follow each other faster than they can be asked about.
+  frameChanged(): void {
+    if (this.model.view.kind !== 'live' && this.frame !== this.model.frame.info.frame) this.collision = null;
   }
 
   // Selects objects. `row` is the collision of a pair, if it is known.
@@ -46,6 +58,7 @@ export class Selection {
     this.request += 1;
     this.info = null;
     this.collision = this.isPair ? row : null;
+    this.frame = this.model.frame.info.frame;
     this.partners = this.objects.length === 1 ? this.model.partnersOf(this.objects[0]!) : [];
     if (this.objects.length === 0) this.panel.clear();
     if (this.collision) this.panel.showPair(this.pairView());
@@ -59,11 +72,13 @@ export class Selection {
     if (this.objects.length === 0) return;
     const request = ++this.request;
     const {objects} = this;
+    const {frame} = this.model.frame.info;
     const read = this.isPair ? this.readPair(objects) : this.readObject(objects[0]!);
     const found = await read;
     if (request !== this.request) return;
     if (this.isPair) {
       this.collision = found as Collision | null;
+      this.frame = frame;
       this.panel.showPair(this.pairView());
     } else {
       this.info = found as ObjectInfo;
@@ -94,7 +109,8 @@ export class Selection {
   }
 
   private pairView(): PairView {
-    return {objects: [this.objects[0]!, this.objects[1]!], row: this.collision, names: [this.nameOf(0), this.nameOf(1)]};
+    const listed = !this.source.exported || this.model.frame.info.pairs <= exportedRows;
+    return {objects: [this.objects[0]!, this.objects[1]!], row: this.collision, names: [this.nameOf(0), this.nameOf(1)], listed};
   }
 
   // The name of the first or second object of a pair. Objects that are not drawn have their names in the row.

@@ -17,8 +17,10 @@ export interface PanelActions {
 export interface PairView {
   objects: readonly [number, number];
   names: readonly [string, string];
-  // Null if the two do not collide in this frame.
+  // Null if the two do not collide in this frame, or if the page has not all collisions.
   row: Collision | null;
+  // Whether the page has all collisions of the frame.
+  listed: boolean;
 }
 
 const buttonLimit = 200;
@@ -38,8 +40,8 @@ export class SelectionPanel {
     this.fill([this.head(tail(info.name ?? '') || `Object ${info.index}`), definitions(this.entries(info)), this.partnerList(info)]);
   }
 
-  showPair({objects, names, row}: PairView): void {
-    const word = row ? row.class ?? 'collision' : 'no collision in this frame';
+  showPair({objects, names, row, listed}: PairView): void {
+    const word = row ? row.class ?? 'collision' : listed ? 'no collision in this frame' : 'not among the collisions of this page';
     const list = make('ul', '', 'pair');
     objects.forEach((object, k) => {
       const item = make('li');

@@ -67,6 +67,12 @@ export class Table {
     return this.rows[0] ?? null;
   }
 
+  // The worst collision of the frame, if the rows begin with it.
+  get worst(): Collision | null {
+    const all = this.sort.value === 'worst' && !this.only.checked && !this.text.value.trim() && this.from === 0;
+    return all ? this.rows[0] ?? null : null;
+  }
+
   // The selection changed: marks its row, and reads other rows if only those of the selection are shown.
   selectionChanged(): void {
     if (this.only.checked) void this.load(0);

@@ -106,6 +106,7 @@ export class Timeline {
 
   // Shows a frame after the one that is being read. Of the frames that were asked for meanwhile, only the last is read.
   private go(frame: number): Promise<void> {
+    if (!Number.isFinite(frame)) return Promise.resolve();
     this.wanted = Math.min(Math.max(frame, 0), Math.max(this.done - 1, 0));
     this.slider.value = String(this.wanted);
     this.reading ??= this.readWanted().finally(() => {

@@ -17,8 +17,8 @@ namespace octopair {
 
 namespace {
 
-constexpr double most = std::numeric_limits<double>::max();
-constexpr Box3d everywhere = {{-most, -most, -most}, {most, most, most}};
+constexpr double farthest = std::numeric_limits<double>::max();
+constexpr Box3d everywhere = {{-farthest, -farthest, -farthest}, {farthest, farthest, farthest}};
 
 /// Returns a point as a box.
 Box3d point(const double (&at)[3]) { return {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}}; }
@@ -31,8 +31,8 @@ Box3d widened(const Box3d& box, double distance) {
     for (int axis = 0; axis < 3; ++axis) {
         const double size = std::max(std::abs(box.min[axis]), std::abs(box.max[axis]));
         const double reach = distance + roundings * (distance + size);
-        wide.min[axis] = std::max(box.min[axis] - reach, -most);
-        wide.max[axis] = std::min(box.max[axis] + reach, most);
+        wide.min[axis] = std::max(box.min[axis] - reach, -farthest);
+        wide.max[axis] = std::min(box.max[axis] + reach, farthest);
     }
     return wide;
 }
@@ -200,6 +200,7 @@ SceneQueries::Order SceneQueries::sorted_by_place(const View& scene, std::size_t
     const std::span<std::uint64_t> keys = sorter_.take(queries);
     const std::size_t share_size = tuning().scene.share_queries;
     const auto set_keys = [&](std::size_t share, unsigned) {
+        throw_if_stopped(scene.stop);
         const std::size_t end = std::min((share + 1) * share_size, queries);
         for (std::size_t i = share * share_size; i < end; ++i) {
             const CellBox cells = scene.octree.space().cells(scene.rounding.entry(begin(i), 0));
@@ -210,12 +211,33 @@ SceneQueries::Order SceneQueries::sorted_by_place(const View& scene, std::size_t
     return {queries, sorter_.sort(32, 32 + unsigned(std::bit_width(scene.octree.units())))};
 }
 
+/// Frees large buffers of the workers at the end of a call, whether it returns or fails.
+template <typename Answer>
+class SceneQueries::KeptBuffers {
+public:
+    KeptBuffers(std::vector<Worker>& workers, std::vector<Answer> Worker::*buffer)
+        : workers_(workers), buffer_(buffer) {}
+    ~KeptBuffers() {
+        for (Worker& worker : workers_) {
+            std::vector<Answer>& buffer = worker.*buffer_;
+            if (buffer.capacity() > tuning().scene.max_kept_answers) std::vector<Answer>().swap(buffer);
+        }
+    }
+    KeptBuffers(const KeptBuffers&) = delete;
+    KeptBuffers& operator=(const KeptBuffers&) = delete;
+
+private:
+    std::vector<Worker>& workers_;
+    std::vector<Answer> Worker::*buffer_;
+};
+
 /// Calls find(query, worker) for each query in parallel, in this order, and joins the answers in the order of the queries. `find` appends
 /// its answers to `collected`.
 template <typename Answer, typename Find>
 void SceneQueries::answer(const Run& run, std::vector<Answer> Worker::*collected, Answers<Answer>& answers,
                           Find&& find) {
     const std::size_t queries = run.order.queries;
+    const KeptBuffers kept(workers_, collected);
     for (Worker& worker : workers_) (worker.*collected).clear();
     parts_.resize(queries);
     const std::size_t share_size = tuning().scene.share_queries;
@@ -234,7 +256,7 @@ void SceneQueries::answer(const Run& run, std::vector<Answer> Worker::*collected
     join(run.stop, collected, answers);
 }
 
-/// Joins the answers of all workers in the order of the queries, and frees large buffers.
+/// Joins the answers of all workers in the order of the queries.
 template <typename Answer>
 void SceneQueries::join(const std::stop_token& stop, std::vector<Answer> Worker::*collected, Answers<Answer>& answers) {
     std::size_t size = 0;
@@ -248,9 +270,6 @@ void SceneQueries::join(const std::stop_token& stop, std::vector<Answer> Worker:
         const auto all = (workers_[part.worker].*collected).begin();
         answers.all.insert(answers.all.end(), all + std::ptrdiff_t(part.begin), all + std::ptrdiff_t(part.end));
         answers.ends.push_back(answers.all.size());
-    }
-    if (size > tuning().scene.max_kept_answers) {
-        for (Worker& worker : workers_) (worker.*collected) = {};
     }
 }
 

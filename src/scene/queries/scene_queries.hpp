@@ -71,6 +71,8 @@ private:
         Order order;
         const std::stop_token& stop;
     };
+    template <typename Answer>
+    class KeptBuffers;
     template <typename Answer, typename Find>
     void answer(const Run& run, std::vector<Answer> Worker::*collected, Answers<Answer>& answers, Find&& find);
     template <typename Answer>

@@ -528,6 +528,17 @@ test('the first picture shows the worst collision', 'static', 300, async ({page,
   assert.ok(await page.locator('#overview').isHidden());
 }, {hash: ''});
 
+test('contacts leave with their frame', 'moving', 50, async ({page}) => {
+  await complete(page);
+  assert.notEqual(await data(page, 'contacts'), '0');
+  const selected = await data(page, 'selected');
+  await page.route('**/collisions/**', () => {});  // is never answered
+  await page.click('#step-forward');
+  await waitForData(page, 'frame', '1');
+  assert.equal(await data(page, 'contacts'), '0');
+  assert.equal(await data(page, 'selected'), selected);
+}, {hash: ''});
+
 test('objects of a pair have two colours, and others are ghosts', 'static', 40, async ({page, scene, address, browser}) => {
   const {a, b} = worstOf(scene);
   const {boxes, pairs} = scene.frame(0);
