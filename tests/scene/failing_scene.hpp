@@ -132,12 +132,12 @@ private:
     std::uint64_t some_number() { return random_() % (std::uint64_t(1) << random_() % 8); }
 
     struct CallKind {
-        bool stoppable = false, is_step = false;
+        bool stoppable, is_step;
     };
     /// Makes a call, after attempts that fail. Returns the result of the first attempt that succeeds. The first attempt of the first step is
     /// refused memory for pairs: later steps rarely need more, so chance alone may refuse none.
     template <typename Call>
-    std::invoke_result_t<Call> make(Call&& call, CallKind kind = {}) {
+    std::invoke_result_t<Call> make(Call&& call, CallKind kind = {false, false}) {
         bool refused = kind.is_step && failing_ > 0 && !std::exchange(stepped_, true);
         while (refused || chance(failing_)) {
             const Contents before = contents();
@@ -169,7 +169,7 @@ private:
         const auto ask = [&] {
             scene_->nearest(places, NearestLimits{1}, answers, Scene::all_groups, stop_->get_token());
         };
-        make(ask, {.stoppable = true});
+        make(ask, {.stoppable = true, .is_step = false});
     }
 
     enum class Disturbance : std::uint8_t { allocation, refusal, stop_at_allocation, stop_at_poll };
