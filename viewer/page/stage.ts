@@ -175,8 +175,9 @@ export class Stage {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  // The colour of a pixel of the page, from a picture that is drawn now.
+  // The colour of a pixel of the page, from a whole picture that is drawn now. While the camera moves, pictures leave out boxes.
   pixel(clientX: number, clientY: number): [number, number, number] {
+    this.lastMove = 0;
     this.draw();
     const gl = this.renderer.getContext();
     const [x, y] = this.toClip(clientX, clientY);

@@ -547,7 +547,8 @@ test('objects of a pair have two colours, and others are ghosts', 'static', 40, 
   await complete(page);
   await page.keyboard.press('h');
   // One of the two may be glass, since it would hide the other.
-  assert.ok(near(await seen(a), light.selected) || near(await seen(b), light.second));
+  const two = [await seen(a), await seen(b)];
+  assert.ok(near(two[0], light.selected) || near(two[1], light.second), two.join(' '));
   const others = [...new Set(pairs.flat())].filter(k => k !== a && k !== b);
   const grey = colour => Math.max(...colour) - Math.min(...colour) < 40 && Math.min(...colour) > 120;
   const colours = await Promise.all(others.map(seen));
