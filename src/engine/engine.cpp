@@ -102,6 +102,7 @@ Summary Engine::stream_pairs(const Input& input, const PairSink& sink, const Opt
     return call(detail::request_of(input, options), {.sink = sink ? &sink : nullptr}, stop);
 }
 
+// NOLINTNEXTLINE(readability-function-size): the parameters of stream_pairs(), and the bound.
 Summary Engine::stream_at_most(std::uint64_t max_pairs, const Input& input, const PairSink& sink,
                                const Options& options, std::stop_token stop) {
     if (!sink) return stream_pairs(input, sink, options, stop);

@@ -141,6 +141,7 @@ void Scene::all_hits(std::span<const Ray> rays, Answers<RayHit>& answers, std::u
     outside_callbacks(state_).queries().all_hits(state_->view(groups, stop), rays, answers);
 }
 
+// NOLINTNEXTLINE(readability-function-size): the parameters of the other queries, and the limits.
 void Scene::nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
                     std::uint32_t groups, std::stop_token stop) {
     const FloatingPointScope scope;
