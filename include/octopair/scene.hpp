@@ -148,7 +148,7 @@ public:
     void nearest(std::span<const Box3d> places, const NearestLimits& limits, Answers<Neighbor>& answers,
                  std::uint32_t groups = all_groups);
 
-    /// The same with a stop token, for many queries.
+    /// These make the same queries, and can be stopped. For many queries at once.
     /// Throws: also Error{cancelled} within 200 ms after a stop request, unless the answers are ready before. `answers` is then unspecified.
     void overlaps(std::span<const Box3d> boxes, Answers<std::uint32_t>& answers, std::uint32_t groups,
                   std::stop_token stop);

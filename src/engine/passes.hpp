@@ -45,7 +45,7 @@ struct Call {
 ///   count              returns the number of pairs. Stops when `limit` is reached
 ///   count_by_object    adds the number of pairs with object i as `a` to counts[i]
 ///   list_octal         appends all pairs in octal order. Throws OverBudget if `call.room` does, as does list_ascending
-///   stream_octal       passes all pairs to `deliver` in octal order, and buffers at most call.buffer_pairs(). What `deliver` throws ends it
+///   stream_octal       passes all pairs to `deliver` in octal order, and buffers at most call.buffer_pairs(). An exception of `deliver` ends it
 ///   list_ascending     appends the pairs within `bounds` in ascending order. Throws OverBudget if the pairs exceed `bounds.max_pairs`
 ///   end                ends the call: frees references to the caller's data
 template <typename T>

@@ -226,7 +226,7 @@ export class App {
     return this.focus && this.model.toAbsolute(this.focus.mark.toArray());
   }
 
-  // What the small picture of the scene shows. There is none if the large one shows the whole scene, or if the others are hidden.
+  // Returns what the small picture of the scene shows. The picture is hidden (null) if the large one shows the whole scene, or if the others are hidden.
   private placeInScene(): Place | null {
     const {focus} = this;
     const seesAll = this.stage.camera.unmoved && !this.framed;

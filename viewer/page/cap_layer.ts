@@ -54,7 +54,7 @@ export class CapLayer {
   private shapes: (THREE.BufferGeometry | null)[] = [];
   private rectangle: THREE.BufferGeometry | null = null;
   private readonly sides: readonly THREE.RawShaderMaterial[];
-  // Of the first part, of the second one, and of what both have in common.
+  // The materials that fill the first part, the second one, and the space inside both.
   private readonly fills: readonly THREE.RawShaderMaterial[] = [
     fillMaterial({stencilRef: 0, stencilFuncMask: 0xff, stencilFunc: THREE.NotEqualStencilFunc}),
     fillMaterial({stencilRef: 0, stencilFuncMask: firstFilled - 1, stencilFunc: THREE.NotEqualStencilFunc}),
@@ -66,7 +66,7 @@ export class CapLayer {
     this.sides = [THREE.BackSide, THREE.FrontSide].map(side => sidesMaterial(shared, side));
   }
 
-  // Whether a picture shows what both parts have in common.
+  // Whether a picture shows the space inside both parts.
   get hasCommon(): boolean {
     return this.rectangle !== null && this.shapes.every(shape => shape);
   }
@@ -77,7 +77,7 @@ export class CapLayer {
     this.rectangle = null;
   }
 
-  // `colours`: of the first part, of the second one, and of what both have in common.
+  // `colours`: of the first part, of the second one, and of the space inside both.
   show(parts: readonly [Part, Part], cut: Cut, colours: readonly [Colour, Colour, Colour]): void {
     this.clear();
     if (parts !== this.parts) this.setParts(parts);

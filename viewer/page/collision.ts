@@ -34,7 +34,7 @@ export interface Measure {
   long: string;
 }
 
-// What is known of how deep a collision is: the depth of the pair, the gap of objects that are apart, or the overlap of their boxes.
+// Returns how deep a collision is: the depth of the pair, the gap of objects that are apart, or the overlap of their boxes. Null: unknown.
 export function measureOf(row: Collision, unit = ''): Measure | null {
   const withUnit = (value: number): string => unit ? `${significant(value)} ${unit}` : significant(value);
   if (row.class === 'clearance' && row.distance !== undefined) {

@@ -12,10 +12,10 @@ export interface Part {
 }
 
 export interface Focus {
-  // What the picture shows: a ball.
+  // The middle and the radius of the ball that the picture shows.
   middle: THREE.Vector3;
   reach: number;
-  // The deepest contact, or the middle of what both boxes have in common.
+  // The deepest contact, or the middle of the space inside both boxes.
   mark: THREE.Vector3;
   normal: THREE.Vector3 | null;
   // The part that is drawn as glass, since it encloses the other one: 0 or 1, or -1.
@@ -26,7 +26,7 @@ export interface Focus {
 // Rays are tested against more triangles only by their boxes.
 const rayTriangles = 60_000;
 
-// What two boxes have in common, or what is between them.
+// Returns the space inside both boxes, or the gap between them.
 function between(a: THREE.Box3, b: THREE.Box3): THREE.Box3 {
   const [low, high] = [a.min.clone().max(b.min), a.max.clone().min(b.max)];
   return new THREE.Box3(low.clone().min(high), low.clone().max(high));

@@ -7,9 +7,6 @@ import {type PairView, SelectionPanel} from './selection_panel.ts';
 import {Missing, type Source, Unreachable} from './source.ts';
 import type {Collision, ObjectInfo, Point} from './types.ts';
 
-// An exported page has the worst rows of a frame, at most so many (max_rows in the program).
-const exportedRows = 1000;
-
 export interface SelectionActions {
   changed(): void;
   clear(): void;
@@ -22,13 +19,14 @@ export interface SelectionActions {
 export class Selection {
   objects: number[] = [];
   partners: number[] = [];
-  // What is known of a single object, or of the collision of a pair.
+  // The answer about a single object, and the collision of a pair.
   info: ObjectInfo | null = null;
   collision: Collision | null = null;
   private readonly panel: SelectionPanel;
   private request = 0;
-  // The frame that `collision` was read for.
+  // The frame that `collision` was read for, and whether the page could find it.
   private frame = 0;
+  private listed = true;
 
   constructor(private readonly source: Source, private readonly model: SceneModel, private readonly actions: SelectionActions) {
     this.panel = new SelectionPanel(model, {...actions, select: objects => void this.select(objects)});
@@ -91,6 +89,7 @@ export class Selection {
   private async readPair([object, other]: number[]): Promise<Collision | null> {
     try {
       const answer = await this.source.collisions(this.model.frame.info.frame, {from: 0, count: 1, sort: 'pair', object, with: other});
+      this.listed = !answer.partial;
       return answer.rows[0] ?? null;
     } catch (error) {
       if (error instanceof Missing || error instanceof Unreachable || isAbort(error)) return this.collision;
@@ -109,7 +108,7 @@ export class Selection {
   }
 
   private pairView(): PairView {
-    const listed = !this.source.exported || this.model.frame.info.pairs <= exportedRows;
+    const {listed} = this;
     return {objects: [this.objects[0]!, this.objects[1]!], row: this.collision, names: [this.nameOf(0), this.nameOf(1)], listed};
   }
 

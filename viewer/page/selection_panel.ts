@@ -17,9 +17,9 @@ export interface PanelActions {
 export interface PairView {
   objects: readonly [number, number];
   names: readonly [string, string];
-  // Null if the two do not collide in this frame, or if the page has not all collisions.
+  // Null if the two do not collide in this frame, or if an exported page left out their row.
   row: Collision | null;
-  // Whether the page has all collisions of the frame.
+  // Whether the page has the rows of all collisions of the frame.
   listed: boolean;
 }
 

@@ -88,7 +88,8 @@ export class ExportSource implements Source {
     const {total, rows} = await table;
     const selected = selectCollisions(rows, query);
     const all = query.object === undefined && !query.q;
-    return {total: all ? Math.max(total, rows.length) : selected.length, rows: selected.slice(query.from, query.from + query.count)};
+    return {total: all ? Math.max(total, rows.length) : selected.length, rows: selected.slice(query.from, query.from + query.count),
+      partial: total > rows.length};
   }
 }
 

@@ -81,6 +81,8 @@ export interface Collision {
 export interface Collisions {
   total: number;
   rows: Collision[];
+  // Whether an exported page left out rows: it has the worst ones of a frame.
+  partial?: boolean;
 }
 
 export interface CollisionQuery {

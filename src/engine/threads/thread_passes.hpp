@@ -41,7 +41,7 @@ public:
         list_pairs(team_, list, scan_into(call, progress));
     }
     void stream_octal(Call& call, const PairSink& deliver, double progress) {
-        // What `deliver` throws ends the scan, not the call, which may scan again.
+        // An exception of `deliver` ends this scan alone: the call may scan again.
         std::stop_source abandon;
         const std::stop_callback forward(call.stop.get_token(), [&] { abandon.request_stop(); });
         stream_pairs(team_, {deliver, call.buffer_pairs(), abandon}, [&](Executor& executor) {

@@ -642,6 +642,21 @@ test('an exported page', async () => {
   });
 });
 
+test('an exported page without the rows of all pairs', async () => {
+  const file = inputs.path('many.html');
+  run(options.program, ['view', inputs.get('10k.npy'), '--export', file, '--quiet']);
+  const {values} = readNpy(inputs.get('10k.npy'));
+  const overlap = ([a, b]) => Math.min(...[0, 1, 2].map(k => Math.min(values[6 * a + 3 + k] - values[6 * b + k], values[6 * b + 3 + k] - values[6 * a + k])));
+  const pairs = readCsv(inputs.detect('10k.npy', '.csv')).map(row => row.map(Number)).sort((p, q) => overlap(q) - overlap(p));
+  assert.ok(pairs.length > 1000);
+  for (const [pair, words] of [[pairs[0], /^Collision/], [pairs.at(-1), /^Not among the collisions of this page/]]) {
+    await withPage(`${pathToFileURL(file).href}#selected=${pair.join(',')}`, async page => {
+      await waitForText(page, '#selection', words);
+      assert.equal(await data(page, 'selected'), pair.join(','));
+    });
+  }
+});
+
 test('screenshots', async () => {
   const page = await browser.newPage();
   for (const input of ['shapes.json', '10k.npy']) {
