@@ -15,10 +15,10 @@ namespace [[gnu::visibility("default")]] octopair {
 
 /// Relation of two objects.
 enum class CollisionClass : std::uint8_t {
-    unknown,      ///< no exact filter has tested the pair
-    clearance,    ///< the objects do not meet; their distance is at most margin + both paddings
-    collision,    ///< the objects meet; no exact feature filter has determined how
-    touching,     ///< the objects meet, but their interiors do not, or a motion within the tolerance separates them
+    unknown,    ///< no exact filter has tested the pair
+    clearance,  ///< the objects do not meet; their distance is at most margin + both paddings
+    collision,  ///< the objects meet; no exact feature filter has determined how
+    touching,   ///< the objects meet, but their interiors do not, or overlap by at most the tolerance (docs/design.md)
     penetrating,  ///< their interiors meet, or their surfaces pass through each other
     contained,    ///< one object lies inside the other, and their surfaces do not meet
     duplicate,    ///< the objects have the same geometry, in the same place within the tolerance
@@ -32,6 +32,14 @@ enum class DepthKind : std::uint8_t {
     unknown,   ///< no filter computed a depth
     least,     ///< equal, to about a millionth of the smaller object's size; between polyhedra, to rounding
     at_least,  ///< a lower bound: no shorter translation separates the objects
+};
+
+/// Says how a thickness relates to the diameter of the largest ball that lies in both objects.
+enum class ThicknessKind : std::uint8_t {
+    unknown,   ///< no filter computed a thickness
+    at_most,   ///< an upper bound, proven
+    at_least,  ///< a lower bound: such a ball was found
+    undecided  ///< a lower bound that is at most the tolerance; no upper bound that is at most the tolerance could be proven
 };
 
 /// The contact of two features. If b moves by `depth` along `normal`, this contact ends.
@@ -58,6 +66,8 @@ struct Finding {
     std::vector<Contact> contacts = {};  ///< deepest first
     bool more_contacts = false;          ///< true if contacts were left out because of a limit
     std::uint64_t note = 0;              ///< free for a user's own filters; octopair does not use it
+    double thickness = 0;  ///< thickness of the overlap of closed solids, if a filter compared it with the tolerance
+    ThicknessKind thickness_kind = ThicknessKind::unknown;
 };
 
 }  // namespace octopair

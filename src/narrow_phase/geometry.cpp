@@ -181,8 +181,7 @@ const shape::Any& Geometry::shape() const { return prepared_->shape; }
 
 bool Geometry::closed() const {
     if (!std::holds_alternative<shape::Mesh>(prepared_->shape)) return true;
-    const std::vector<MeshParts::Side>& sides = prepared_->tree->parts.sides;
-    return std::find(sides.begin(), sides.end(), MeshParts::Side::open) == sides.end();
+    return prepared_->tree->parts.all_closed();
 }
 
 const detail::PreparedShape& detail::prepared(const Geometry& geometry) { return *geometry.prepared_; }

@@ -118,6 +118,21 @@ void apply_tolerance(const Pair& pair, const std::vector<Point3d>& directions, c
     finding.depth_at_most = std::min(finding.depth_at_most, request.tolerance);
 }
 
+/// Sets the thickness. Changes the class from penetrating to touching if the overlap is proven to be at most as thick as the tolerance,
+/// and to go through neither object.
+template <typename Pair>
+void apply_thickness(const Pair& pair, const ContactRequest& request, Finding& finding) {
+    if (finding.collision_class != CollisionClass::penetrating) {
+        finding.thickness = finding.depth_at_most;
+        finding.thickness_kind = ThicknessKind::at_most;
+        return;
+    }
+    const OverlapThickness overlap = pair.thickness(request.tolerance, request.stop);
+    finding.thickness = overlap.thickness;
+    finding.thickness_kind = overlap.kind;
+    if (overlap.kind == ThicknessKind::at_most) finding.collision_class = CollisionClass::touching;
+}
+
 /// Finds the contacts of a pair, bounds the depth, and applies the tolerance. Finds a few contacts even if the caller wants no contacts,
 /// because bound_depth() and apply_tolerance() try their normals as directions.
 template <typename Pair>
@@ -126,7 +141,10 @@ void find_contacts_of(const Pair& pair, const ContactRequest& request, Finding& 
     pair.find_contacts({std::max(enough, request.max_contacts), request.stop}, finding);
     const std::vector<Point3d> directions = directions_out(finding.contacts);
     bound_depth(pair, directions, finding);
-    if (request.tolerance > 0) apply_tolerance(pair, directions, request, finding);
+    if (request.tolerance > 0) {
+        apply_tolerance(pair, directions, request, finding);
+        apply_thickness(pair, request, finding);
+    }
     if (finding.contacts.size() <= request.max_contacts) return;
     finding.contacts.resize(request.max_contacts);
     finding.more_contacts = true;

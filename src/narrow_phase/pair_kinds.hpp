@@ -1,7 +1,7 @@
 // Kinds of objects (mesh, convex solid, plane), and for each kind of pair the functions that its tests consist of.
 //
 // Kinds of pairs  TwoMeshes, TwoSolids, MeshAndSolid, SolidAndPlane, MeshAndPlane. A mesh comes first in its pair, a plane last.
-// Functions       meeting(), gap(), find_contacts(), set_contained_depth(), is_separated_by(), overlap_along().
+// Functions       meeting(), gap(), find_contacts(), set_contained_depth(), is_separated_by(), overlap_along(), thickness().
 //                 is_separated_by(motion): whether the objects do not penetrate if b is moved.
 #pragma once
 
@@ -22,6 +22,7 @@
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "narrow_phase/object_pair.hpp"
 #include "narrow_phase/plane_pair.hpp"
+#include "narrow_phase/thickness/overlap_thickness.hpp"
 #include "octopair/collision.hpp"
 
 namespace octopair {
@@ -150,6 +151,10 @@ struct TwoMeshes {
         return !meshes_penetrate(a, {b.tree, there}, stop);
     }
     double overlap_along(const Point3d& direction) const { return octopair::overlap_along(direction, a, b); }
+    OverlapThickness thickness(double tolerance, const std::stop_token& stop) const {
+        if (!a.tree.parts.all_closed() || !b.tree.parts.all_closed()) return {};
+        return overlap_thickness(a, b, tolerance, stop);
+    }
 };
 
 struct TwoSolids {
@@ -173,6 +178,7 @@ struct TwoSolids {
     // Never called: the depth is always the least, so object_pair.cpp tries no directions.
     static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
     static double overlap_along(const Point3d&) { return 0; }
+    static OverlapThickness thickness(double, const std::stop_token&) { return {}; }
 };
 
 struct MeshAndSolid {
@@ -203,6 +209,7 @@ struct MeshAndSolid {
         return finding.collision_class == CollisionClass::touching;
     }
     double overlap_along(const Point3d& direction) const { return octopair::overlap_along(direction, mesh, solid); }
+    static OverlapThickness thickness(double, const std::stop_token&) { return {}; }
 };
 
 struct SolidAndPlane {
@@ -225,6 +232,7 @@ struct SolidAndPlane {
     // Never called: the depth is always the least, so object_pair.cpp tries no directions.
     static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
     static double overlap_along(const Point3d&) { return 0; }
+    static OverlapThickness thickness(double, const std::stop_token&) { return {}; }
 
     static void set_plane_contact(const PosedPlane& plane, const PlaneSpan& span, std::uint32_t max_contacts,
                                   Finding& finding) {
@@ -253,6 +261,7 @@ struct MeshAndPlane {
     // Never called: the depth is always the least, so object_pair.cpp tries no directions.
     static bool is_separated_by(const Point3d&, const std::stop_token&) { return false; }
     static double overlap_along(const Point3d&) { return 0; }
+    static OverlapThickness thickness(double, const std::stop_token&) { return {}; }
 };
 
 /// Makes the pair of the two objects, of one of the kinds above, and returns judge(pair). Returns `of_planes` for two planes.

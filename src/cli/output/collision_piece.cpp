@@ -15,9 +15,10 @@ using Block = CollisionPiece::Block;
 
 void append_finding(Block& block, const Finding& finding) {
     block.contacts.insert(block.contacts.end(), finding.contacts.begin(), finding.contacts.end());
-    block.findings.push_back({finding.collision_class, finding.depth_kind, finding.open, finding.more_contacts,
-                              std::uint32_t(finding.contacts.size()), finding.distance, finding.depth,
-                              finding.depth_at_most, finding.time, finding.nearest, finding.note});
+    block.findings.push_back({finding.collision_class, finding.depth_kind, finding.thickness_kind, finding.open,
+                              finding.more_contacts, std::uint32_t(finding.contacts.size()), finding.distance,
+                              finding.depth, finding.depth_at_most, finding.thickness, finding.time, finding.nearest,
+                              finding.note});
 }
 
 /// Lengths of the arrays of a block.
@@ -75,7 +76,9 @@ std::vector<Finding> CollisionPiece::Block::full_findings() const {
                    .time = flat.time,
                    .contacts = {contact, end},
                    .more_contacts = flat.more_contacts,
-                   .note = flat.note};
+                   .note = flat.note,
+                   .thickness = flat.thickness,
+                   .thickness_kind = flat.thickness_kind};
         contact = end;
     }
     return full;

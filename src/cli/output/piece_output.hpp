@@ -30,10 +30,11 @@ public:
     struct FlatFinding {
         CollisionClass collision_class;
         DepthKind depth_kind;
+        ThicknessKind thickness_kind;
         std::array<bool, 2> open;
         bool more_contacts;
         std::uint32_t contacts;
-        double distance, depth, depth_at_most, time;
+        double distance, depth, depth_at_most, thickness, time;
         std::array<Point3d, 2> nearest;
         std::uint64_t note;
     };

@@ -27,6 +27,10 @@ void add_finding(CollisionRecord& row, const Finding& finding, const CollisionFo
     if (!form.features) return;
     row.contacts = finding.contacts;
     row.more_contacts = finding.more_contacts;
+    if (finding.thickness_kind != ThicknessKind::unknown) {
+        row.thickness = finding.thickness;
+        row.thickness_kind = finding.thickness_kind;
+    }
     if (finding.depth_kind == DepthKind::unknown) return;
     row.depth = finding.depth;
     row.depth_kind = finding.depth_kind;
@@ -51,6 +55,8 @@ Finding finding_of(const CollisionRecord& row) {
     finding.depth = row.depth.value_or(0);
     finding.depth_kind = row.depth_kind.value_or(DepthKind::unknown);
     finding.depth_at_most = row.depth_at_most.value_or(0);
+    finding.thickness = row.thickness.value_or(0);
+    finding.thickness_kind = row.thickness_kind.value_or(ThicknessKind::unknown);
     finding.open = {row.a.open, row.b.open};
     finding.time = row.time.value_or(0);
     if (row.contacts) finding.contacts = *row.contacts;

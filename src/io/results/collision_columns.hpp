@@ -44,6 +44,8 @@ struct CollisionRecord {
     std::optional<double> depth = {};
     std::optional<DepthKind> depth_kind = {};
     std::optional<double> depth_at_most = {};
+    std::optional<double> thickness = {};
+    std::optional<ThicknessKind> thickness_kind = {};
     std::optional<std::vector<Contact>> contacts = {};
     bool more_contacts = false;
 };
@@ -84,6 +86,8 @@ void for_each_json_column(Row& row, const Visit& visit) {
     visit("depth", row.depth);
     visit("depth_kind", row.depth_kind);
     visit("depth_at_most", row.depth_at_most);
+    visit("thickness", row.thickness);
+    visit("thickness_kind", row.thickness_kind);
     visit("contacts", row.contacts);
     visit("more_contacts", row.more_contacts);
     visit(columns_of_a.open, row.a.open);
@@ -122,6 +126,8 @@ void for_each_csv_column(Row& row, const Visit& visit) {
     visit("more_contacts", row.more_contacts);
     visit("depth_kind", row.depth_kind);
     visit("open", CsvOpen<Row>{row});
+    visit("thickness", row.thickness);
+    visit("thickness_kind", row.thickness_kind);
     for (std::size_t i = 0; i < all_details.size(); ++i) {
         visit(columns_of_a.details[i], row.a.details[i]);
         visit(columns_of_b.details[i], row.b.details[i]);
@@ -152,6 +158,8 @@ template <>
 inline constexpr std::size_t words_of<CollisionClass> = collision_classes;
 template <>
 inline constexpr std::size_t words_of<DepthKind> = 3;
+template <>
+inline constexpr std::size_t words_of<ThicknessKind> = 4;
 template <>
 inline constexpr std::size_t words_of<Change> = 3;
 

@@ -69,6 +69,11 @@ constexpr std::string_view word_of(DepthKind kind) {
     constexpr std::string_view words[] = {"unknown", "least", "at_least"};
     return words[std::size_t(kind)];
 }
+/// Returns the word for a kind of thickness, for example "at_most".
+constexpr std::string_view word_of(ThicknessKind kind) {
+    constexpr std::string_view words[] = {"unknown", "at_most", "at_least", "undecided"};
+    return words[std::size_t(kind)];
+}
 constexpr std::string_view word_of(Change change) {
     constexpr std::string_view words[] = {"new", "same", "gone"};
     return words[std::size_t(change)];

@@ -7,6 +7,7 @@
 // Source    Wald 2007, "On fast construction of SAH-based bounding volume hierarchies" (binning).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -36,6 +37,9 @@ struct MeshParts {
     std::vector<Side> sides;             ///< by triangle, in the tree's order
     std::vector<std::uint32_t> numbers;  ///< by triangle, in the tree's order: the index of its part in `corners`
     bool any_closed = false;
+
+    /// True for a mesh without triangles.
+    bool all_closed() const { return std::find(sides.begin(), sides.end(), Side::open) == sides.end(); }
 };
 
 struct MeshTree {

@@ -1,0 +1,148 @@
+#include "narrow_phase/thickness/overlap_thickness.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "narrow_phase/mesh/mesh_probe.hpp"
+#include "narrow_phase/thickness/overlap_surface.hpp"
+#include "narrow_phase/thickness/plank.hpp"
+#include "narrow_phase/thickness/plank_cover.hpp"
+
+namespace octopair {
+
+namespace {
+
+constexpr std::size_t max_boxes = 4000;          // that a search for a proof examines
+constexpr std::size_t max_boxes_for_balls = 64;  // that it examines after it failed
+constexpr std::size_t max_pieces = 96;           // boxes with more pieces are divided at once
+
+struct SearchBox {
+    Box3d box;
+    NearLists near;
+
+    std::size_t longest_axis() const {
+        std::size_t longest = 0;
+        for (const std::size_t axis : {std::size_t(1), std::size_t(2)}) {
+            if (length(axis) > length(longest)) longest = axis;
+        }
+        return longest;
+    }
+    double length(std::size_t axis) const { return box.max[axis] - box.min[axis]; }
+    double longest() const { return length(longest_axis()); }
+    bool operator<(const SearchBox& other) const { return longest() < other.longest(); }
+};
+
+class ThicknessSearch {
+public:
+    ThicknessSearch(const PosedMesh& a, const PosedMesh& b, double tolerance, const std::stop_token& stop)
+        : tolerance_(tolerance), stop_(stop), surface_(a, b, tolerance), probes_{SurfaceProbe(a), SurfaceProbe(b)} {}
+
+    OverlapThickness run() {
+        // Depth first: a box that cannot be decided ends the search for a proof soon.
+        std::vector<SearchBox> waiting;
+        waiting.push_back({surface_.common_box(), surface_.all_near()});
+        bool proven = true;
+        for (std::size_t examined = 0; !waiting.empty(); ++examined) {
+            if (stop_.stop_requested()) break;
+            if (proven && examined == max_boxes) proven = false;
+            if (!proven) {
+                // What is left may still show a thick ball. The largest boxes come first.
+                if (examined == max_boxes + max_boxes_for_balls) break;
+                std::iter_swap(std::max_element(waiting.begin(), waiting.end()), waiting.end() - 1);
+            }
+            const SearchBox at = std::move(waiting.back());
+            waiting.pop_back();
+            NearLists near;
+            if (is_thin(at, near)) continue;
+            if (found_ > tolerance_ || pierced_) return {ThicknessKind::at_least, found_};
+            if (at.longest() > tolerance_ / 8) {
+                divide(at, near, waiting);
+            } else if (proven) {
+                proven = false;
+                examined = max_boxes;
+            }
+        }
+        return {proven ? ThicknessKind::at_most : ThicknessKind::undecided, proven ? thickest_ : found_};
+    }
+
+private:
+    /// Returns true if no ball thicker than the tolerance has its centre in the box. Sets `near` to the triangles that count in the box.
+    bool is_thin(const SearchBox& at, NearLists& near) {
+        const double reach = tolerance_ / 2 + surface_.rounding();
+        ConvexDomain rounded = rounded_domain(at.box, reach);
+        FoundPieces found;
+        const bool few = surface_.find_pieces(rounded.box, at.near, max_pieces, found);
+        near = std::move(found.near);
+        if (!few) {
+            test_ball(middle_of(at.box));
+            return false;
+        }
+        if (has_cover(at.box, {rounded.box}, found.pieces)) return true;
+        // In small boxes, much of the box around lies beyond the reach of balls.
+        if (at.longest() > 4 * tolerance_) return false;
+        cut_off(rounded, found.pieces);
+        return has_cover(at.box, rounded, found.pieces);
+    }
+
+    /// Removes the parts of the pieces outside of the domain.
+    static void cut_off(const ConvexDomain& domain, std::vector<Piece>& pieces) {
+        for (Piece& piece : pieces) {
+            for (const CutPlane& plane : domain.planes) piece.polygon = split(piece.polygon, plane, 0).below;
+            piece.area = area_of(piece.polygon);
+        }
+        std::erase_if(pieces, [](const Piece& piece) { return piece.polygon.empty(); });
+    }
+
+    /// Returns true if planks cover the overlap in the domain. Otherwise looks for a thick ball, and for a layer that is pierced.
+    bool has_cover(const Box3d& box, const ConvexDomain& domain, const std::vector<Piece>& pieces) {
+        const CoverRequest request{surface_, domain, pieces, tolerance_ + surface_.rounding()};
+        const Cover cover = find_cover(request);
+        if (cover.found) {
+            thickest_ = std::max(thickest_, cover.width);
+            return true;
+        }
+        test_ball(middle_of(box));
+        for (const Point3d& point : cover.in_both) test_ball(point);
+        pierced_ |= is_pierced(request, box);
+        return false;
+    }
+
+    /// Updates found_ if a larger ball around the point lies in both solids.
+    void test_ball(const Point3d& point) {
+        if (!surface_.in_both(point)) return;
+        const Point3d place = surface_.world(point);
+        double radius = probes_[0].distance(place, found_ / 2);
+        radius = std::min(radius, probes_[1].distance(place, found_ / 2));
+        found_ = std::max(found_, 2 * radius - surface_.rounding());
+    }
+
+    static void divide(const SearchBox& at, const NearLists& near, std::vector<SearchBox>& waiting) {
+        const std::size_t axis = at.longest_axis();
+        SearchBox low{at.box, near}, high{at.box, near};
+        low.box.max[axis] = high.box.min[axis] = middle_of(at.box)[axis];
+        waiting.push_back(std::move(low));
+        waiting.push_back(std::move(high));
+    }
+
+    double tolerance_;
+    const std::stop_token& stop_;
+    OverlapSurface surface_;
+    std::array<SurfaceProbe, 2> probes_;
+    double found_ = 0;     // diameter of the largest ball that was found
+    double thickest_ = 0;  // largest sum of the widths of the planks in a box
+    bool pierced_ = false;
+};
+
+}  // namespace
+
+OverlapThickness overlap_thickness(const PosedMesh& a, const PosedMesh& b, double tolerance,
+                                   const std::stop_token& stop) {
+    return ThicknessSearch(a, b, tolerance, stop).run();
+}
+
+}  // namespace octopair

@@ -1,0 +1,84 @@
+#include "narrow_phase/thickness/polygon.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace octopair {
+
+namespace {
+
+/// Returns the part of a polygon where `height` is at most 0; height(corner) is affine.
+template <typename Height>
+Polygon part_below(const Polygon& polygon, const Height& height) {
+    Polygon part;
+    const std::size_t count = polygon.corners.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point3d &from = polygon.corners[i], &to = polygon.corners[(i + 1) % count];
+        const double at = height(from), next = height(to);
+        if (at <= 0) part.corners.push_back(from);
+        if ((at < 0 && next > 0) || (at > 0 && next < 0)) {
+            part.corners.push_back(vector::plus(from, vector::times(vector::minus(to, from), at / (at - next))));
+        }
+    }
+    if (part.empty()) part.corners.clear();
+    return part;
+}
+
+}  // namespace
+
+Extent extent_along(const Point3d& direction, const Polygon& polygon) {
+    Extent extent{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Point3d& corner : polygon.corners) {
+        const double at = vector::dot(direction, corner);
+        extent = {std::min(extent.low, at), std::max(extent.high, at)};
+    }
+    return extent;
+}
+
+Point3d middle_of(const Polygon& polygon) {
+    Point3d sum = {};
+    for (const Point3d& corner : polygon.corners) sum = vector::plus(sum, corner);
+    return vector::times(sum, 1 / double(polygon.corners.size()));
+}
+
+Point3d middle_of(const Box3d& box) {
+    Point3d middle;
+    for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] = box.min[axis] / 2 + box.max[axis] / 2;
+    return middle;
+}
+
+bool contains(const Box3d& box, const Point3d& point) {
+    bool inside = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) inside &= box.min[axis] <= point[axis] && point[axis] <= box.max[axis];
+    return inside;
+}
+
+double area_of(const Polygon& polygon) {
+    Point3d sum = {};
+    for (std::size_t i = 2; i < polygon.corners.size(); ++i) {
+        sum = vector::plus(sum, vector::cross(vector::minus(polygon.corners[i - 1], polygon.corners[0]),
+                                              vector::minus(polygon.corners[i], polygon.corners[0])));
+    }
+    return vector::length(sum) / 2;
+}
+
+Polygon clipped(const Triangle3d& triangle, const Box3d& box) {
+    Polygon polygon;
+    polygon.corners.assign(triangle.begin(), triangle.end());
+    for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
+        polygon = part_below(polygon, [&](const Point3d& corner) { return box.min[axis] - corner[axis]; });
+        polygon = part_below(polygon, [&](const Point3d& corner) { return corner[axis] - box.max[axis]; });
+    }
+    return polygon;
+}
+
+SplitPolygon split(const Polygon& polygon, const CutPlane& plane, double rounding) {
+    if (polygon.empty()) return {};
+    const auto [low, high] = extent_along(plane.normal, polygon);
+    if (high <= plane.offset + rounding) return {polygon, {}};
+    if (low >= plane.offset - rounding) return {{}, polygon};
+    return {part_below(polygon, [&](const Point3d& corner) { return plane.height(corner); }),
+            part_below(polygon, [&](const Point3d& corner) { return -plane.height(corner); })};
+}
+
+}  // namespace octopair

@@ -1,0 +1,51 @@
+// Polygon: a convex polygon in space, cut by planes and boxes.
+//
+// Rounding  A cut moves a point by a few roundings of its coordinates. Callers keep coordinates small: relative to a point nearby.
+#pragma once
+
+#include <vector>
+
+#include "geometry/vector.hpp"
+#include "octopair/objects.hpp"
+#include "octopair/pose.hpp"
+
+namespace octopair {
+
+/// The points x with normal * x = offset; those with normal * x < offset are below.
+struct CutPlane {
+    Point3d normal;  ///< length 1
+    double offset;
+
+    double height(const Point3d& point) const { return vector::dot(normal, point) - offset; }
+};
+
+struct Polygon {
+    std::vector<Point3d> corners;  ///< in order
+
+    bool empty() const { return corners.size() < 3; }
+};
+
+/// Least and greatest coordinate along a direction.
+struct Extent {
+    double low, high;
+};
+Extent extent_along(const Point3d& direction, const Polygon& polygon);
+
+Point3d middle_of(const Polygon& polygon);
+Point3d middle_of(const Box3d& box);
+bool contains(const Box3d& box, const Point3d& point);
+
+/// Returns the area of the polygon.
+double area_of(const Polygon& polygon);
+
+/// Returns the part of a triangle in a box; empty if they do not meet.
+Polygon clipped(const Triangle3d& triangle, const Box3d& box);
+
+/// The parts of a polygon below and above a plane.
+struct SplitPolygon {
+    Polygon below,
+        above;  ///< empty if the polygon does not reach further than `rounding` beyond the plane on this side
+};
+SplitPolygon split(const Polygon& polygon, const CutPlane& plane, double rounding);
+
+}  // namespace octopair
