@@ -22,10 +22,11 @@ enum class CollisionClass : std::uint8_t {
     penetrating,  ///< their interiors meet, or their surfaces pass through each other
     contained,    ///< one object lies inside the other, and their surfaces do not meet
     duplicate,    ///< the objects have the same geometry, in the same place within the tolerance
+    undecided,  ///< no collision: one object may be inside the other, whose mesh is not closed (ExactOptions::keep_undecided)
 };
 
 /// Number of classes, for arrays that a class indexes.
-inline constexpr std::size_t collision_classes = 7;
+inline constexpr std::size_t collision_classes = 8;
 
 /// Says how a depth relates to the length of the shortest translation that separates two objects.
 enum class DepthKind : std::uint8_t {

@@ -71,11 +71,14 @@ struct ExactOptions {
     /// Finding::more_contacts is true. Of equally deep contacts, those of the triangles with the lowest indices are kept.
     std::uint32_t max_contacts = 16;
     /// Length, finite, >= 0. Objects are `touching` if a translation of at most this length is proven to separate them, up to
-    /// rounding errors.
+    /// rounding errors; closed meshes also if their overlap is proven to be at most this thick, and to open (docs/design.md).
     double tolerance = 0;
     /// Length, finite, >= 0; the default is the tolerance. Objects of the same geometry are `duplicate` if each corner of one object is at
     /// most this far from the same corner of the other object.
     std::optional<double> duplicate_tolerance = {};
+    /// "exact object" keeps pairs as `undecided` that it would drop: an object lies in the bounds of a mesh that is not closed, and may be
+    /// inside it. Objects that move are not kept.
+    bool keep_undecided = false;
 };
 
 /// Returns the filter "bounding spheres". Drops pairs whose bounding spheres are further apart than margin and paddings.

@@ -78,7 +78,7 @@ public:
         if (!findings_.empty()) findings_.resize(kept);
     }
 
-    /// Counts a pair that the filter drops although the geometry leaves open whether the pair is a collision (FilterCounts::undecided).
+    /// Counts a pair that the filter cannot decide (FilterCounts::undecided).
     void count_undecided() { ++undecided_; }
 
     /// Returns the stop token of the call. A filter that spends long on one pair should check it.
@@ -118,8 +118,8 @@ struct FilterCounts {
     std::string name;
     std::uint64_t in = 0, out = 0;  ///< number of pairs before and after the filter
     double seconds = 0;             ///< sum over all threads
-    /// Number of dropped pairs that may be collisions. For "exact object": an object lies in the bounds of a mesh that is not closed. Such
-    /// a mesh has no inside, and the surfaces do not meet, so the filter cannot decide.
+    /// Number of pairs that the filter could not decide. "exact object" drops them: an object lies in the bounds of a mesh that is not
+    /// closed. Such a mesh has no inside, and the surfaces do not meet. "exact feature" keeps them as penetrating: ThicknessKind::undecided.
     std::uint64_t undecided = 0;
 };
 

@@ -44,8 +44,8 @@ from ._jobs import Job, PairStream
 from ._octants import Octants, list_octants
 from ._pipeline import Pipeline, collide, self_intersections
 from ._program import Detection, detect, generate, replay
-from ._results import (COLLISION_CLASSES, DEPTH_KINDS, Answers, FilterCounts, Hits, JobResult, Neighbors, PipelineSummary, StepResult,
-                       StepSeconds, Summary)
+from ._results import (COLLISION_CLASSES, DEPTH_KINDS, THICKNESS_KINDS, Answers, FilterCounts, Hits, JobResult, Neighbors, PipelineSummary,
+                       StepResult, StepSeconds, Summary)
 from ._scene import Scene
 from ._shapes import Geometry, Shapes, make_poses
 from ._viewer import View
@@ -53,8 +53,8 @@ from ._viewer import View
 __all__ = [
     "COLLISION_CLASSES", "DEPTH_KINDS", "Answers", "CancelledError", "Collisions", "Detection", "Engine", "EngineError", "Error", "FileError",
     "FilterCounts", "Geometry", "Hits", "InputError", "InputTypeError", "Job", "JobResult", "Neighbors", "OctalCode", "Octants", "PairStream",
-    "Pipeline", "PipelineSummary", "ResourceLimitError", "Scene", "Shapes", "StepResult", "StepSeconds", "Summary", "UsageError", "View",
-    "__version__", "collide", "count_pairs", "detect", "find_pairs", "generate", "id_dtype", "list_octants", "make_poses", "mpi_engine", "replay",
+    "Pipeline", "PipelineSummary", "ResourceLimitError", "Scene", "Shapes", "StepResult", "StepSeconds", "Summary", "THICKNESS_KINDS", "UsageError",
+    "View", "__version__", "collide", "count_pairs", "detect", "find_pairs", "generate", "id_dtype", "list_octants", "make_poses", "mpi_engine", "replay",
     "self_intersections", "stream_pairs",
 ]
 _MODULES = ("mpi", "remote", "trimesh")  # imported when they are used

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Array
 from ._errors import InputTypeError, UsageError
-from ._results import COLLISION_CLASSES, DEPTH_KINDS, PipelineSummary, html_table
+from ._results import COLLISION_CLASSES, DEPTH_KINDS, THICKNESS_KINDS, PipelineSummary, html_table
 
 _NO_FEATURE = 0xFFFFFFFF
 
@@ -52,7 +52,8 @@ class Collisions(_Columns):
 
     ``list(table)`` are the names of the columns, ``table["depth"]`` is a column, ``dict(table)`` are all columns, ``len(table)`` is the
     number of pairs, and ``table[0]`` is a row as a dict. ``pandas.DataFrame(table)`` has a row for each pair. The columns are a, b, name_a and
-    name_b (of objects with names), class, distance, depth, depth_kind, depth_at_most, time, and contacts, which are numbers of contacts.
+    name_b (of objects with names), class, distance, depth, depth_kind, depth_at_most, thickness, thickness_kind, time, and contacts, which are
+    numbers of contacts.
 
     Attributes are the same columns and further arrays; ``table["nearest"]`` is another form of ``table.nearest``, and so on. Lengths are in
     the caller's unit. A value that no filter computed is 0.
@@ -73,6 +74,10 @@ class Collisions(_Columns):
         Positions in ``DEPTH_KINDS``, uint8: whether the depth is the least one, or a lower bound. The column has the names.
     depth_at_most : numpy.ndarray
         Length of a translation that was found to separate the objects, float64.
+    thickness : numpy.ndarray
+        Diameter of the largest ball in both objects, as far as a tolerance > 0 was compared with it, float64.
+    thickness_kind : numpy.ndarray
+        Positions in ``THICKNESS_KINDS``, uint8: whether the thickness is an upper or a lower bound. The column has the names.
     open : numpy.ndarray
         Whether the first and the second object are meshes with a part that is not closed, shape (m, 2), bool.
     time : numpy.ndarray
@@ -101,7 +106,7 @@ class Collisions(_Columns):
     >>> balls = op.Shapes([op.Geometry.sphere(1)], op.make_poses([[0, 0, 0], [1.5, 0, 0], [9, 0, 0]]), [0, 0, 0])
     >>> table = op.collide(balls)
     >>> list(table)
-    ['a', 'b', 'class', 'distance', 'depth', 'depth_kind', 'depth_at_most', 'time', 'contacts']
+    ['a', 'b', 'class', 'distance', 'depth', 'depth_kind', 'depth_at_most', 'thickness', 'thickness_kind', 'time', 'contacts']
     >>> table["depth"], table[0]["class"], table[0]["contacts"][0]["point"]
     (array([0.5]), 'penetrating', [0.75, 0.0, 0.0])
     """
@@ -113,6 +118,8 @@ class Collisions(_Columns):
     depth: NDArray[np.float64]
     depth_kind: NDArray[np.uint8]
     depth_at_most: NDArray[np.float64]
+    thickness: NDArray[np.float64]
+    thickness_kind: NDArray[np.uint8]
     open: NDArray[np.bool_]
     time: NDArray[np.float64]
     more_contacts: NDArray[np.bool_]
@@ -199,6 +206,8 @@ class Collisions(_Columns):
             return np.array(COLLISION_CLASSES)[self.class_codes[rows]]
         if name == "depth_kind":
             return np.array(DEPTH_KINDS)[self.depth_kind[rows]]
+        if name == "thickness_kind":
+            return np.array(THICKNESS_KINDS)[self.thickness_kind[rows]]
         if name == "contacts":
             return np.diff(self.contact_offsets)[rows]
         if name in ("name_a", "name_b"):
@@ -237,7 +246,8 @@ class Collisions(_Columns):
         """Iterates over the names of the columns."""
         names = ["name_a"] if self.names is not None else []
         names += ["name_b"] if self.against_names is not None else []
-        return iter(["a", "b", *names, "class", "distance", "depth", "depth_kind", "depth_at_most", "time", "contacts"])
+        return iter(["a", "b", *names, "class", "distance", "depth", "depth_kind", "depth_at_most", "thickness", "thickness_kind", "time",
+                     "contacts"])
 
     def __contains__(self, name: object) -> bool:
         try:

@@ -11,10 +11,13 @@ import numpy as np
 
 from ._arrays import Array
 
-COLLISION_CLASSES = ("unknown", "clearance", "collision", "touching", "penetrating", "contained", "duplicate")
+COLLISION_CLASSES = ("unknown", "clearance", "collision", "touching", "penetrating", "contained", "duplicate",
+                     "undecided")
 """Names of the classes of collisions; a code in ``Collisions.class_codes`` is a position in this tuple."""
 DEPTH_KINDS = ("unknown", "least", "at_least")
 """Names of the kinds of depths; a code in ``Collisions.depth_kind`` is a position in this tuple."""
+THICKNESS_KINDS = ("unknown", "at_most", "at_least", "undecided")
+"""Names of the kinds of thicknesses; a code in ``Collisions.thickness_kind`` is a position in this tuple."""
 
 
 def html_table(title: str, rows: List[Tuple[str, str]]) -> str:
@@ -227,7 +230,8 @@ class FilterCounts:
     seconds : float
         Sum over all threads.
     undecided : int
-        Dropped pairs that may count: an object lies in the bounds of a mesh that is not closed and so has no inside.
+        Pairs that the filter could not decide. "exact object" drops them: an object lies in the bounds of a mesh that is not closed, so it has
+        no inside. "exact feature" keeps them as penetrating: it could not compare the thickness of their overlap with the tolerance.
     """
 
     name: str

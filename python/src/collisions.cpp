@@ -20,6 +20,8 @@ void CollisionColumns::append(const Finding& finding) {
     depths_.push_back(finding.depth);
     depth_kinds_.push_back(std::uint8_t(finding.depth_kind));
     depths_at_most_.push_back(finding.depth_at_most);
+    thicknesses_.push_back(finding.thickness);
+    thickness_kinds_.push_back(std::uint8_t(finding.thickness_kind));
     open_.push_back(finding.open);
     times_.push_back(finding.time);
     more_contacts_.push_back(finding.more_contacts ? 1 : 0);
@@ -44,6 +46,8 @@ py::dict CollisionColumns::take() {
     columns["depth"] = array_of<double>(std::move(taken.depths_));
     columns["depth_kind"] = array_of<std::uint8_t>(std::move(taken.depth_kinds_));
     columns["depth_at_most"] = array_of<double>(std::move(taken.depths_at_most_));
+    columns["thickness"] = array_of<double>(std::move(taken.thicknesses_));
+    columns["thickness_kind"] = array_of<std::uint8_t>(std::move(taken.thickness_kinds_));
     columns["open"] = array_of<bool>(std::move(taken.open_), {2});
     columns["time"] = array_of<double>(std::move(taken.times_));
     columns["more_contacts"] = array_of<bool>(std::move(taken.more_contacts_));

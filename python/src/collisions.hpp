@@ -25,8 +25,8 @@ private:
     void append(const Finding& finding);
 
     std::vector<Pair> pairs_;
-    std::vector<std::uint8_t> classes_, depth_kinds_;
-    std::vector<double> distances_, depths_, depths_at_most_, times_;
+    std::vector<std::uint8_t> classes_, depth_kinds_, thickness_kinds_;
+    std::vector<double> distances_, depths_, depths_at_most_, thicknesses_, times_;
     std::vector<std::array<Point3d, 2>> nearest_;
     std::vector<std::array<bool, 2>> open_;
     std::vector<std::uint64_t> notes_;

@@ -209,7 +209,10 @@ struct MeshAndSolid {
         return finding.collision_class == CollisionClass::touching;
     }
     double overlap_along(const Point3d& direction) const { return octopair::overlap_along(direction, mesh, solid); }
-    static OverlapThickness thickness(double, const std::stop_token&) { return {}; }
+    OverlapThickness thickness(double tolerance, const std::stop_token& stop) const {
+        if (!mesh.tree.parts.all_closed()) return {};
+        return overlap_thickness(mesh, solid, tolerance, stop);
+    }
 };
 
 struct SolidAndPlane {

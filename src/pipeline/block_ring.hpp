@@ -28,7 +28,7 @@ namespace octopair {
 struct FilterWork {
     std::uint64_t in = 0, out = 0;  ///< numbers of pairs before and after the filter
     double seconds = 0;
-    std::uint64_t undecided = 0;  ///< pairs that the filter dropped although they may collide
+    std::uint64_t undecided = 0;  ///< pairs that the filter could not decide
 };
 
 struct Block {

@@ -160,9 +160,9 @@ bool may_be_inside(const PosedObject& inner, const PosedObject& open) {
 }
 
 /// Returns whether the objects of pair `i` meet or come within the margin. If so, replaces the pair's finding, but keeps its note.
-bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i) {
+bool judge(const PosedPairs& objects, const ExactOptions& options, Batch& batch, std::size_t i) {
     const Pair pair = batch.pairs()[i];
-    const double reach = margin + objects.padding(pair);
+    const double reach = options.margin + objects.padding(pair);
     Finding found;
     const bool counts = objects.moving()
                             ? judge_moving({objects.moving_a(pair), objects.moving_b(pair)}, reach, found, batch.stop())
@@ -170,8 +170,10 @@ bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i
     const auto [a_open, b_open] = objects.open(pair);
     if (!counts) {
         const PosedObject a = objects.a(pair), b = objects.b(pair);
-        if ((a_open && may_be_inside(b, a)) || (b_open && may_be_inside(a, b))) batch.count_undecided();
-        return false;
+        if (!(a_open && may_be_inside(b, a)) && !(b_open && may_be_inside(a, b))) return false;
+        batch.count_undecided();
+        if (!options.keep_undecided || objects.moving()) return false;
+        found = {.collision_class = CollisionClass::undecided};
     }
     Finding& finding = batch.finding(i);
     found.note = finding.note;
@@ -182,17 +184,17 @@ bool judge(const PosedPairs& objects, double margin, Batch& batch, std::size_t i
 
 class ExactObjectFilter final : public Filter {
 public:
-    ExactObjectFilter(const PosedPairs& objects, double margin) : objects_(objects), margin_(margin) {}
+    ExactObjectFilter(const PosedPairs& objects, const ExactOptions& options) : objects_(objects), options_(options) {}
 
     std::string_view name() const override { return "exact object"; }
 
     void apply(Batch& batch) const override {
-        batch.keep_if([&](std::size_t i) { return judge(objects_, margin_, batch, i); });
+        batch.keep_if([&](std::size_t i) { return judge(objects_, options_, batch, i); });
     }
 
 private:
     PosedPairs objects_;
-    double margin_;
+    ExactOptions options_;
 };
 
 class ExactFeatureFilter final : public Filter {
@@ -208,14 +210,18 @@ public:
             const Pair pair = batch.pairs()[i];
             // If no "exact object" filter ran before, this filter also decides whether the objects meet.
             const bool judged = batch.finding(i).collision_class != CollisionClass::unknown;
-            if (!judged && !judge(objects_, options_.margin, batch, i)) return false;
+            if (!judged && !judge(objects_, options_, batch, i)) return false;
             Finding& finding = batch.finding(i);
-            if (finding.collision_class == CollisionClass::clearance) return true;
+            if (finding.collision_class == CollisionClass::clearance ||
+                finding.collision_class == CollisionClass::undecided) {
+                return true;
+            }
             if (objects_.moving()) {
                 find_impact({objects_.moving_a(pair), objects_.moving_b(pair), finding.time}, request, finding);
             } else {
                 find_contacts(objects_.a(pair), objects_.b(pair), request, finding);
             }
+            if (finding.thickness_kind == ThicknessKind::undecided) batch.count_undecided();
             return true;
         });
     }
@@ -264,7 +270,7 @@ std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, con
                                                  const ShapedObjects* second) {
     const FloatingPointScope scope;
     check(options);
-    return std::make_unique<ExactObjectFilter>(PosedPairs(first, second), options.margin);
+    return std::make_unique<ExactObjectFilter>(PosedPairs(first, second), options);
 }
 
 std::unique_ptr<Filter> make_exact_feature_filter(const ShapedObjects& first, const ExactOptions& options,

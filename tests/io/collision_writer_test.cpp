@@ -27,6 +27,8 @@ std::vector<Finding> findings() {
     findings[1].depth = 1.0 / 3;
     findings[1].depth_kind = DepthKind::at_least;
     findings[1].depth_at_most = 0.5;
+    findings[1].thickness = 0.125;
+    findings[1].thickness_kind = ThicknessKind::at_least;
     findings[1].open = {false, true};
     findings[1].time = 0.5;
     findings[1].contacts = {{{0, 1e300, -0.0}, {0, 0, 1}, 1.0 / 3, 7, Contact::no_feature}};
@@ -58,6 +60,7 @@ TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
 {"a":0,"b":2,"a_name":"left, \"l\"","b_name":"r)"
         "\xEF\xBF\xBD"
         R"(ight","class":"penetrating","time":0.5,"depth":0.3333333333333333,"depth_kind":"at_least","depth_at_most":0.5,)"
+        R"("thickness":0.125,"thickness_kind":"at_least",)"
         R"("contacts":[{"point":[0,1e+300,-0],"normal":[0,0,1],"depth":0.3333333333333333,"a_feature":7}],)"
         R"("more_contacts":true,"b_open":true}
 {"a":1,"b":2,"b_name":"r)"
@@ -70,14 +73,15 @@ TEST(CollisionWriter, JsonlSaysWhatIsKnown) {
 TEST(CollisionWriter, CsvLeavesEmptyWhatIsNotKnown) {
     const auto found = findings();
     const std::string header =
-        "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open";
+        "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,thickness,thickness_"
+        "kind";
     EXPECT_EQ(written(".csv", {{{object_names}, {object_names}}, true, true}, {pairs, found}),
               header +
-                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,1 2 3;1 2 3.1,,,\n"
+                  "\n0,1,\"left, \"\"l\"\"\",,clearance,0.1,,0,,1 2 3;1 2 3.1,,,,,\n"
                   "0,2,\"left, \"\"l\"\"\",r\xEF\xBF\xBDight,penetrating,,0.3333333333333333,0.5,1,0 1e+300 "
-                  "-0,true,at_least,b\n"
-                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,,,least,\n");
-    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,,,,\n");
+                  "-0,true,at_least,b,0.125,at_least\n"
+                  "1,2,,r\xEF\xBF\xBDight,touching,,0,0,0,,,least,,,\n");
+    EXPECT_EQ(written(".csv", {}, {std::span(pairs).first(1), {}}), header + "\n0,1,,,,,,,,,,,,,\n");
 }
 
 TEST(CollisionWriter, TrianglesAreNamedByTheirOwner) {
@@ -103,10 +107,11 @@ TEST(CollisionWriter, DetailsThatAnObjectHasAreColumns) {
               "\n");
     EXPECT_EQ(
         written(".csv", {{names, names}, false, false, true}, {pair, {}}, {R"({"a":0,"b":1,"a_type":"t","b_id":"7"})"}),
-        "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,a_type,b_type,"
+        "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,thickness,thickness_"
+        "kind,a_type,b_type,"
         "a_id,b_id,a_material,b_material,change\n"
-        "0,1,x,y,,,,,,,,,,\"wall, thick\",,1,,,stone,\n"
-        "0,1,,,,,,,,,,,,t,,,7,,,gone\n");
+        "0,1,x,y,,,,,,,,,,,,\"wall, thick\",,1,,,stone,\n"
+        "0,1,,,,,,,,,,,,,,t,,,7,,,gone\n");
 }
 
 TEST(CollisionWriter, NpyHoldsPairsAlone) {
@@ -125,9 +130,10 @@ TEST(CollisionWriter, OldRowsThatAreGone) {
                                                                        std::string(old.substr(0, old.size() - 1)) +
                                                                        ",\"change\":\"gone\"}\n");
     EXPECT_EQ(written(".csv", form, {pair, {}, changes}, {old}),
-              "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,change\n0,1,,,"
-              ",,,,,,,,,new\n"
-              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3;4 5 6,true,,b,gone\n");
+              "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,thickness,"
+              "thickness_kind,change\n0,1,,,"
+              ",,,,,,,,,,,new\n"
+              "4,5,\"x,y\",,penetrating,,0.1,,2,1 2.5 3;4 5 6,true,,b,,,gone\n");
 }
 
 class BaselineTest : public ::testing::Test {
@@ -194,7 +200,7 @@ TEST_F(BaselineTest, ValuesOfAnotherTypeAreRefused) {
     EXPECT_EQ(message(R"("b_id":7)"), "old.jsonl: line 2: b_id: a number, not a string");
     EXPECT_EQ(message(R"("class":"deep")"),
               "old.jsonl: line 2: class: 'deep' is none of unknown, clearance, collision, "
-              "touching, penetrating, contained, duplicate");
+              "touching, penetrating, contained, duplicate, undecided");
     EXPECT_EQ(message(R"("change":"begun")"), "old.jsonl: line 2: change: 'begun' is none of new, same, gone");
     EXPECT_EQ(message(R"("depth_kind":1)"), "old.jsonl: line 2: depth_kind: a number, not a string");
     EXPECT_EQ(message(R"("depth":"0.1")"), "old.jsonl: line 2: depth: a string, not a number");

@@ -13,7 +13,7 @@ from test_shapes import CUBE_FACES, CUBE_VERTICES, cube_mesh
 
 import octopair as op
 
-COLUMNS = ["a", "b", "class", "distance", "depth", "depth_kind", "depth_at_most", "time", "contacts"]
+COLUMNS = ["a", "b", "class", "distance", "depth", "depth_kind", "depth_at_most", "thickness", "thickness_kind", "time", "contacts"]
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +49,9 @@ def test_a_table_is_a_mapping_of_columns(table, shapes):
     assert np.array_equal(table["contacts"], np.diff(table.contact_offsets))
     assert table["name_b"].tolist() == [shapes.names[b] for b in table.b]
     assert set(table["depth_kind"]) <= set(op.DEPTH_KINDS) and np.array_equal(np.array(op.DEPTH_KINDS)[table.depth_kind], table["depth_kind"])
+    assert set(table["thickness_kind"]) == {"unknown"}  # no tolerance
+    touching = op.collide(shapes, tolerance=1)
+    assert set(touching["thickness_kind"]) <= set(op.THICKNESS_KINDS) and touching.thickness[touching["thickness_kind"] == "at_most"].max() <= 1
     assert table["nearest"] is not None and np.array_equal(table["pairs"], table.pairs)  # further arrays
     assert "depth" in table and "pairs" in table and "nonsense" not in table and "names" not in table and 0 not in table and table
     assert table.get("nonsense") is None and table.get("nonsense", 3) == 3

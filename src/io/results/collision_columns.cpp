@@ -19,6 +19,7 @@ void add_finding(CollisionRecord& row, const Finding& finding, const CollisionFo
     row.a.open = finding.open[0];
     row.b.open = finding.open[1];
     if (form.times) row.time = finding.time;
+    if (what == CollisionClass::undecided) return;
     if (!meet(what)) {
         row.distance = finding.distance;
         row.nearest = finding.nearest;

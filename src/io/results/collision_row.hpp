@@ -60,7 +60,7 @@ struct CollisionRows {
 /// Returns the word for a class in result files, for example "penetrating".
 constexpr std::string_view word_of(CollisionClass collision_class) {
     constexpr std::string_view words[] = {"unknown",     "clearance", "collision", "touching",
-                                          "penetrating", "contained", "duplicate"};
+                                          "penetrating", "contained", "duplicate", "undecided"};
     static_assert(std::size(words) == collision_classes);
     return words[std::size_t(collision_class)];
 }
@@ -79,7 +79,9 @@ constexpr std::string_view word_of(Change change) {
     return words[std::size_t(change)];
 }
 
-/// Returns whether objects of this class meet. If they meet, depth and contacts are defined; otherwise the distance is defined.
-constexpr bool meet(CollisionClass collision_class) { return collision_class > CollisionClass::clearance; }
+/// Returns whether objects of this class meet. If they meet, depth and contacts are defined.
+constexpr bool meet(CollisionClass collision_class) {
+    return collision_class > CollisionClass::clearance && collision_class != CollisionClass::undecided;
+}
 
 }  // namespace octopair::io

@@ -3,7 +3,7 @@
 //
 //   jsonl  {"a":0,"b":5,"a_name":"left","b_name":"right","class":"penetrating","depth":0.5,"contacts":[...]}; unknown keys
 //          are left out
-//   csv    header "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open"; two columns more
+//   csv    header "a,b,a_name,b_name,class,distance,depth,time,contacts,points,more_contacts,depth_kind,open,thickness,thickness_kind"; two columns more
 //          for each detail that an object has, for example ",a_type,b_type"; with a baseline ",change". Unknown fields are empty
 //
 // A file appears whole, with finish(), or not at all.

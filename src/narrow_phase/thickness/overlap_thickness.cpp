@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "narrow_phase/mesh/mesh_probe.hpp"
+#include "narrow_phase/thickness/outer_mesh.hpp"
 #include "narrow_phase/thickness/overlap_surface.hpp"
 #include "narrow_phase/thickness/plank.hpp"
 #include "narrow_phase/thickness/plank_cover.hpp"
@@ -143,6 +144,20 @@ private:
 OverlapThickness overlap_thickness(const PosedMesh& a, const PosedMesh& b, double tolerance,
                                    const std::stop_token& stop) {
     return ThicknessSearch(a, b, tolerance, stop).run();
+}
+
+OverlapThickness overlap_thickness(const PosedMesh& mesh, const BoxedSolid& solid, double tolerance,
+                                   const std::stop_token& stop) {
+    const auto outer = make_outer_mesh(solid.solid, tolerance / 16);
+    if (!outer) return {};
+    const auto tree = make_mesh_tree(outer->mesh);
+    OverlapThickness overlap = overlap_thickness(mesh, {*tree, solid.box.pose}, tolerance, stop);
+    if (overlap.kind == ThicknessKind::at_most) return overlap;
+    // A ball in the mesh around the solid may reach out of the solid by the error.
+    const double certain = std::max(0.0, overlap.thickness - 2 * outer->error);
+    if (overlap.thickness > tolerance && certain <= tolerance) overlap.kind = ThicknessKind::undecided;
+    overlap.thickness = certain;
+    return overlap;
 }
 
 }  // namespace octopair

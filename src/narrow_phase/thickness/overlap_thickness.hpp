@@ -1,4 +1,4 @@
-// Thickness of the overlap of two closed meshes: the diameter of the largest ball that lies in both solids.
+// Thickness of the overlap of two closed meshes, or of a closed mesh and a convex solid: the diameter of the largest ball that lies in both solids.
 //
 // Search    Boxes that divide the common box, the largest first. Each asks whether a ball with its centre in the box, and of a diameter
 //           above the tolerance, may lie in both solids:
@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <stop_token>
 
+#include "narrow_phase/mesh/mesh_convex.hpp"
 #include "narrow_phase/mesh/mesh_pair.hpp"
 #include "octopair/collision.hpp"
 
@@ -27,6 +28,10 @@ struct OverlapThickness {
 /// everywhere. Otherwise returns the diameter of a ball that was found (`at_least`), or says that the search decided nothing (`undecided`).
 /// After a stop request the result is unspecified. Requires: both meshes are closed and have triangles.
 OverlapThickness overlap_thickness(const PosedMesh& a, const PosedMesh& b, double tolerance,
+                                   const std::stop_token& stop);
+
+/// The same for a mesh and a convex solid, by a mesh around the solid. Returns `unknown` for a convex hull of points.
+OverlapThickness overlap_thickness(const PosedMesh& mesh, const BoxedSolid& solid, double tolerance,
                                    const std::stop_token& stop);
 
 }  // namespace octopair

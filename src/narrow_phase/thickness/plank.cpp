@@ -9,12 +9,19 @@ namespace octopair {
 
 namespace {
 
+/// Returns a number that grows with the angle of (x, y), from -2 to 2.
+double angle_order(double x, double y) {
+    const double size = std::abs(x) + std::abs(y);
+    if (!(size > 0)) return 0;
+    return x >= 0 ? y / size : std::copysign(2, y) - y / size;
+}
+
 /// Sorts the corners of a convex polygon by their angles around its middle.
 void sort_around(Polygon& polygon, const Point3d& normal) {
     const Point3d middle = middle_of(polygon), u = vector::some_normal(normal), v = vector::cross(normal, u);
     const auto angle = [&](const Point3d& corner) {
         const Point3d from = vector::minus(corner, middle);
-        return std::atan2(vector::dot(from, v), vector::dot(from, u));
+        return angle_order(vector::dot(from, u), vector::dot(from, v));
     };
     std::sort(polygon.corners.begin(), polygon.corners.end(),
               [&](const Point3d& x, const Point3d& y) { return angle(x) < angle(y); });

@@ -42,7 +42,8 @@ ConvexDomain rounded_domain(const Box3d& box, double reach);
 /// A bounded convex polyhedron, by its faces; without faces it is empty.
 class Polyhedron {
 public:
-    explicit Polyhedron(const ConvexDomain& domain, double rounding);
+    Polyhedron() = default;
+    Polyhedron(const ConvexDomain& domain, double rounding);
 
     /// Removes the part above the plane.
     void cut(const CutPlane& plane, double rounding);

@@ -191,11 +191,12 @@ Polyhedron pierced_region(Polyhedron region, const PlankPart& above, const Plank
 
 class CoverTest {
 public:
-    CoverTest(const CoverRequest& request, const Polyhedron& domain, Cover& cover)
-        : request_(request), domain_(domain), cover_(cover) {}
+    CoverTest(const CoverRequest& request, Cover& cover) : request_(request), cover_(cover) {}
 
     /// Returns true if the planks, some of them widened, are a cover.
     bool run(std::vector<Plank> planks) {
+        if (width_of(planks) > request_.most) return false;
+        if (domain_.empty()) domain_ = Polyhedron(request_.domain, rounding());
         for (int i = 0; width_of(planks) <= request_.most && i <= max_widenings; ++i) {
             const bool clear = visit_regions(domain_, planks, rounding(), [&](const Polyhedron& region) {
                 const Point3d middle = region.middle();
@@ -296,8 +297,8 @@ private:
     }
 
     const CoverRequest& request_;
-    const Polyhedron& domain_;
     Cover& cover_;
+    Polyhedron domain_;  // empty before the first test
 };
 
 /// Returns how far above `from` the line along `direction` meets the piece; nothing if it does not.
@@ -340,8 +341,7 @@ bool is_pierced(const CoverRequest& request, const Box3d& box) {
 
 Cover find_cover(const CoverRequest& request) {
     Cover cover;
-    const Polyhedron domain(request.domain, request.surface.rounding());
-    CoverTest test(request, domain, cover);
+    CoverTest test(request, cover);
     if (request.pieces.empty()) {
         cover.found = test.run({});
         return cover;

@@ -11,7 +11,10 @@
 namespace octopair {
 
 void StageCheck::take(std::span<const Pair> pairs, std::span<const Finding> findings) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) collisions_.push_back({pairs[i], findings[i]});
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        // Undecided pairs are no collisions.
+        if (findings[i].collision_class != CollisionClass::undecided) collisions_.push_back({pairs[i], findings[i]});
+    }
 }
 
 /// Returns the collision of a pair; null: it was dropped. Requires: the collisions are sorted.

@@ -21,7 +21,7 @@ Json contact_json(const Contact& contact) {
 }
 
 /// How bad the classes are, indexed by CollisionClass: objects that overlap are worse than objects that touch.
-constexpr std::array<std::uint8_t, collision_classes> severities = {2, 0, 3, 1, 6, 5, 4};
+constexpr std::array<std::uint8_t, collision_classes> severities = {2, 0, 3, 1, 6, 5, 4, 0};
 
 bool has_depth(const Finding& finding) { return finding.depth_kind != DepthKind::unknown || finding.depth > 0; }
 
@@ -38,7 +38,7 @@ void add_depth(Json& row, const Finding& finding) {
 
 void add_finding(Json& row, const Finding& finding) {
     row["class"] = class_words[std::size_t(finding.collision_class)];
-    if (finding.collision_class > CollisionClass::clearance) {
+    if (finding.collision_class > CollisionClass::clearance && finding.collision_class != CollisionClass::undecided) {
         add_depth(row, finding);
     } else {
         row["distance"] = finding.distance;
