@@ -205,6 +205,11 @@ std::string describe(const ReadFile& file) {
     text += line_of("unit", set.scene.space.unit.empty() ? "not known" : set.scene.space.unit);
     text += line_of("axes", axes_text(set.scene.space));
     text += line_of("objects", objects_text(set, file.counts));
+    const io::ElementCounts& elements = set.scene.elements;
+    if (elements.with_geometry > 0) {
+        text += line_of("elements", fmt::format("{} of {} with geometry were read", grouped(elements.read),
+                                                grouped(elements.with_geometry)));
+    }
     if (set.scene.moving) text += line_of("frames", grouped(set.scene.frames));
     if (file.counts && file.counts->of_kind.back() > 0) text += mesh_lines(file);
     text += line_of("bounds", bounds_text(set));

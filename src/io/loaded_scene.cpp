@@ -39,6 +39,17 @@ void append_optional(std::vector<T>& to, std::vector<T>&& from, const Counts& co
 
 }  // namespace
 
+void ElementCounts::add(const ElementCounts& others) {
+    with_geometry += others.with_geometry;
+    read += others.read;
+    lost.insert(lost.end(), others.lost.begin(), others.lost.end());
+    for (const TypeCount& other : others.left_out) {
+        const auto same = std::find_if(left_out.begin(), left_out.end(),
+                                       [&](const TypeCount& known) { return known.type == other.type; });
+        same != left_out.end() ? same->count += other.count : left_out.emplace_back(other).count;
+    }
+}
+
 void LoadedShapes::append(LoadedShapes&& others) {
     const Counts counts{poses.size(), others.poses.size()};
     if (!end_poses.empty() || !others.end_poses.empty()) {

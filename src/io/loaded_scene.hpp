@@ -51,6 +51,32 @@ struct LoadedTriangles {
     void append(LoadedTriangles&& others);
 };
 
+/// Number of elements of a type, for example "IFCSPACE".
+struct TypeCount {
+    std::string type;
+    std::uint64_t count = 0;
+};
+
+/// Elements of one type that a file has with geometry, but that were not read.
+struct LostElements {
+    std::string file, type;
+    std::uint64_t count = 0;
+    std::string
+        first;  ///< the first of them in the file: its id, and its name if it has one, for example "2O2Fr$t4X7Zf8NOew3FLR9 ('Wall 3')"
+};
+
+/// Elements of building models. An element may be several objects.
+struct ElementCounts {
+    std::uint64_t with_geometry =
+        0;  ///< elements that the files have with geometry, without those left out on purpose; 0: not known
+    std::uint64_t read = 0;           ///< elements among them that have at least one object
+    std::vector<LostElements> lost;   ///< the others, by file and type, in the order of the first
+    std::vector<TypeCount> left_out;  ///< elements that are left out on purpose, by type
+
+    /// Adds the counts of other files.
+    void add(const ElementCounts& others);
+};
+
 /// Box i of frame f is boxes[f * objects + i]. Boxes of a large .npy file are mapped from the file. A scene with shapes or
 /// triangles may have no boxes yet; the caller then computes the boxes from the shapes.
 struct LoadedScene {
@@ -67,7 +93,8 @@ struct LoadedScene {
     /// Warnings of the readers, for example that a part of a file was not read. Each is one line "FILE: ...".
     std::vector<std::string> warnings;
     std::vector<std::string>
-        not_read;  ///< content that readers left out, for example "IFCSPACE (3)"; for `octopair info`
+        not_read;            ///< content that readers left out, for example "IFCSPACE (3)"; for `octopair info`
+    ElementCounts elements;  ///< elements of IFC models
     std::optional<LoadedShapes> shapes;        ///< set if SceneContent::shapes is set and the file has shapes
     std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects
 

@@ -168,6 +168,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     for (const LoadedScene& scene : scenes) {
         joined.largest_rounded = std::max(joined.largest_rounded, scene.largest_rounded);
         joined.warnings.insert(joined.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+        joined.elements.add(scene.elements);
         joined.not_read.insert(joined.not_read.end(), scene.not_read.begin(), scene.not_read.end());
     }
     joined.space = joint_space(scenes);

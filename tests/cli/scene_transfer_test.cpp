@@ -55,6 +55,7 @@ LoadedScene full_scene() {
     io::DetailsBuilder(scene.details).add({"w", "wheel", "7", "car", "", "steel"});
     io::DetailsBuilder(scene.triangles->owner_details).add({"o", "", "", "", "", ""});
     scene.space = {io::UpAxis::y, "mm"};
+    scene.elements = {4, 3, {{"a.ifc", "IFCWALL", 1, "x"}}, {{"IFCSPACE", 2}}};
     return scene;
 }
 
@@ -68,6 +69,8 @@ TEST(SceneTransfer, AllThatASceneHoldsArrives) {
     EXPECT_EQ(scene.details.of(0, io::Detail::material), "steel");
     EXPECT_EQ(scene.details.rows, sent.details.rows);
     EXPECT_EQ(scene.space, sent.space);
+    EXPECT_EQ(scene.elements.lost[0].first, "x");
+    EXPECT_EQ(scene.elements.left_out[0].count, 2u);
     ASSERT_TRUE(scene.shapes && scene.triangles);
     EXPECT_EQ(std::get<shape::Cone>(scene.shapes->shapes[0]).length, 2);
     EXPECT_EQ(std::get<shape::Mesh>(scene.shapes->shapes[1]).triangles, (decltype(shape::Mesh::triangles){{0, 1, 1}}));

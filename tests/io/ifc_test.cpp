@@ -1,6 +1,7 @@
 // Tests IFC models: names, details, axes and unit. The model is a wall and a beam that share 100 mm.
 #include <gtest/gtest.h>
 
+#include "io/ifc_model.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 #include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/temporary.hpp"
@@ -190,7 +191,7 @@ TEST(Ifc, NamesAreFoundInTheText) {
 TEST(Ifc, ElementsWithABodyAreCounted) {
     const io::IfcText text = io::read_ifc_text(model);
     EXPECT_EQ(text.bodies,
-              (io::IfcTexts{{"0000000000000000000006", "IFCWALL"}, {"0000000000000000000007", "IFCBEAM"}}));
+              (std::vector<io::IfcBody>{{"0000000000000000000006", "IFCWALL"}, {"0000000000000000000007", "IFCBEAM"}}));
     EXPECT_TRUE(text.left_out.empty());
     std::string axis = model;
     axis.replace(axis.find("'Body'"), 6, "'Axis'");
@@ -199,6 +200,9 @@ TEST(Ifc, ElementsWithABodyAreCounted) {
     space.replace(space.find("IFCWALL("), 8, "IFCSPACE(");
     EXPECT_EQ(io::read_ifc_text(space).bodies.size(), 1u);
     EXPECT_EQ(io::read_ifc_text(space).left_out.at("IFCSPACE"), 1u);
+    std::string heater = model;
+    heater.replace(heater.find("IFCWALL("), 8, "IFCSPACEHEATER(");
+    EXPECT_TRUE(io::read_ifc_text(heater).left_out.empty());
 }
 
 TEST(Ifc, LostElementsAreAWarning) {
@@ -214,10 +218,62 @@ TEST(Ifc, LostElementsAreAWarning) {
     lost.insert(lost.find("#20="),
                 "#56=IFCBLOCK(#4,1.,1.,1.);\n"
                 "#57=IFCSHAPEREPRESENTATION(#5,'Body','CSG',(#56));\n#58=IFCPRODUCTDEFINITIONSHAPE($,$,(#57));\n");
-    EXPECT_EQ(
-        warnings(lost),
-        std::vector{path + ": 1 of 2 elements with a body were not read, for example IFCWALL 0000000000000000000006 "
-                           "('T_\u00fcr'); Assimp knows only IFC2x3: export the model as IFC2x3, glTF or OBJ"});
+    EXPECT_EQ(warnings(lost),
+              std::vector{path + ": 1 of 2 elements with geometry were not read: 1 IFCWALL, the first is "
+                                 "0000000000000000000006 ('T_\u00fcr'). Export the model as glTF or OBJ"});
+    lost.replace(lost.find("IFC2X3"), 6, "IFC4");
+    EXPECT_TRUE(warnings(lost)[0].ends_with("Export the model as IFC2x3, glTF or OBJ"));
+}
+
+TEST(Ifc, LostElementsAreCountedByType) {
+    IfcModel built;
+    const int block = built.add("IFCBLOCK(#9,1.,1.,1.)");  // Assimp leaves out solids of this type
+    built.add_box("IFCWALL", "good", {0, 0, 0, 1, 1, 1});
+    built.add_element("IFCBEAM", "b1", block);
+    built.add_element("IFCWALL", "w1", block);
+    built.add_element("IFCBEAM", "b2", block);
+    built.add_element("IFCSPACE", "s", block);
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("model.ifc");
+    write_file(path, built.text());
+    for (const io::MeshObjects objects : {io::MeshObjects::node, io::MeshObjects::triangle}) {
+        const io::ElementCounts elements = io::read_mesh_scene(path, {objects, true}).elements;
+        EXPECT_EQ(elements.with_geometry, 4u);
+        EXPECT_EQ(elements.read, 1u);
+        ASSERT_EQ(elements.lost.size(), 2u);
+        EXPECT_EQ(elements.lost[0].file, path);
+        EXPECT_EQ(elements.lost[0].type, "IFCBEAM");
+        EXPECT_EQ(elements.lost[0].count, 2u);
+        EXPECT_EQ(elements.lost[0].first, ifc_id("b1") + " ('b1')");
+        EXPECT_EQ(elements.lost[1].first, ifc_id("w1") + " ('w1')");
+        ASSERT_EQ(elements.left_out.size(), 1u);
+        EXPECT_EQ(elements.left_out[0].type, "IFCSPACE");
+    }
+}
+
+/// Some exporters give two elements the same GlobalId. If one of them is lost, the other does not hide this.
+TEST(Ifc, AnElementWithTheIdOfAnotherIsCounted) {
+    IfcModel built;
+    built.add_box("IFCWALL", "same", {0, 0, 0, 1, 1, 1});
+    built.add_element("IFCWALL", "same", built.add("IFCBLOCK(#9,1.,1.,1.)"));
+    const TemporaryDirectory directory;
+    const std::string path = directory.file("model.ifc");
+    write_file(path, built.text());
+    const io::ElementCounts elements = io::read_mesh_scene(path, {io::MeshObjects::node}).elements;
+    EXPECT_EQ(elements.with_geometry, 2u);
+    EXPECT_EQ(elements.read, 1u);
+}
+
+TEST(Ifc, CountsOfSeveralFilesAreAdded) {
+    io::ElementCounts sum{3, 2, {{"a.ifc", "IFCWALL", 1, "x"}}, {{"IFCSPACE", 2}}};
+    sum.add({4, 3, {{"b.ifc", "IFCWALL", 1, "y"}}, {{"IFCGRID", 1}, {"IFCSPACE", 5}}});
+    EXPECT_EQ(sum.with_geometry, 7u);
+    EXPECT_EQ(sum.read, 5u);
+    ASSERT_EQ(sum.lost.size(), 2u);
+    EXPECT_EQ(sum.lost[1].file, "b.ifc");
+    ASSERT_EQ(sum.left_out.size(), 2u);
+    EXPECT_EQ(sum.left_out[0].count, 7u);
+    EXPECT_EQ(sum.left_out[1].type, "IFCGRID");
 }
 
 TEST(Ifc, TheSchemaIsARemedy) {

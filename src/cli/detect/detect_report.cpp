@@ -204,6 +204,30 @@ std::string exact_text(const DetectReport& report) {
                               report.open_objects > report.first_open.size() ? ", ..." : "");
 }
 
+/// Returns the line about the elements of IFC models: how many were read, and what is left out on purpose.
+std::string elements_text(const DetectReport& report) {
+    const io::ElementCounts& elements = report.elements;
+    if (elements.with_geometry == 0 && elements.left_out.empty()) return {};
+    std::string left_out;
+    for (const io::TypeCount& type : elements.left_out)
+        left_out +=
+            fmt::format("{}{} {}", left_out.empty() ? "; left out on purpose: " : ", ", type.type, grouped(type.count));
+    return fmt::format("elements    {} of {} with geometry were read{}\n", grouped(elements.read),
+                       grouped(elements.with_geometry), left_out);
+}
+
+nlohmann::ordered_json elements_json(const io::ElementCounts& elements) {
+    nlohmann::ordered_json json = {{"with_geometry", elements.with_geometry}, {"read", elements.read}};
+    json["lost"] = nlohmann::ordered_json::array();
+    for (const io::LostElements& lost : elements.lost) {
+        json["lost"].push_back(
+            {{"file", lost.file}, {"type", lost.type}, {"count", lost.count}, {"first", lost.first}});
+    }
+    json["left_out"] = nlohmann::ordered_json::object();
+    for (const io::TypeCount& type : elements.left_out) json["left_out"][type.type] = type.count;
+    return json;
+}
+
 /// Returns the counts of all classes that collisions have.
 nlohmann::ordered_json classes_json(const DetectReport& report) {
     nlohmann::ordered_json classes = nlohmann::ordered_json::object();
@@ -240,6 +264,7 @@ std::string summary_text(const DetectReport& report) {
         text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
                             grouped(report.changes->same), grouped(report.changes->gone));
     }
+    text += elements_text(report);
     for (const std::string& warning : report.warnings) text += fmt::format("warning     {}\n", warning);
     text += exact_text(report) + filters_text(report) + verified_text(report) + time_text(report);
     const double objects = double(report.objects) * double(report.frames);
@@ -271,6 +296,7 @@ std::string stats_json(const DetectReport& report) {
         stats["not_closed"] = report.open_objects;
         stats["undecided"] = undecided_pairs(report);
     }
+    if (report.elements.with_geometry > 0) stats["elements"] = elements_json(report.elements);
     if (!report.warnings.empty()) stats["warnings"] = report.warnings;
     if (report.changes) {
         const io::ChangeCounts& changes = *report.changes;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/engine_choice.hpp"
+#include "io/loaded_scene.hpp"
 #include "io/results/baseline.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/pipeline.hpp"
@@ -46,6 +47,7 @@ struct DetectReport {
     bool tolerance_is_precision = false;      ///< true: the tolerance is the error of rounding to float32
     std::uint64_t open_objects = 0;           ///< objects whose geometry is not closed
     std::vector<std::string> first_open;      ///< names of the first open objects
+    io::ElementCounts elements;               ///< elements of IFC models among the inputs
     std::vector<std::string> warnings;        ///< results of input_warnings()
     std::optional<io::ChangeCounts> changes;  ///< nothing without --baseline
     std::optional<EventCounts> events;  ///< nothing without --events; with it, `entries` and `steps` are not known

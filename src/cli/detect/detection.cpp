@@ -70,7 +70,10 @@ private:
             refuse_empty_parts(inputs_.first.parts);
             refuse_empty_parts(inputs_.second.parts);
         }
-        if (whole) report_.warnings = input_warnings(request_, sets());
+        if (whole) {
+            report_.warnings = input_warnings(request_, sets());
+            for (const InputSet* set : {&inputs_.first, &inputs_.second}) report_.elements.add(set->scene.elements);
+        }
 #ifdef OCTOPAIR_WITH_PIPELINE
         describe_shapes();
 #endif

@@ -18,8 +18,14 @@ concept Some = std::same_as<std::remove_const_t<Any>, T>;
 
 auto members(Some<io::LoadedScene> auto& scene) {
     return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.largest_rounded, scene.names,
-                    scene.details, scene.space, scene.warnings, scene.not_read, scene.shapes, scene.triangles);
+                    scene.details, scene.space, scene.warnings, scene.not_read, scene.elements, scene.shapes,
+                    scene.triangles);
 }
+auto members(Some<io::ElementCounts> auto& elements) {
+    return std::tie(elements.with_geometry, elements.read, elements.lost, elements.left_out);
+}
+auto members(Some<io::TypeCount> auto& type) { return std::tie(type.type, type.count); }
+auto members(Some<io::LostElements> auto& lost) { return std::tie(lost.file, lost.type, lost.count, lost.first); }
 auto members(Some<io::LoadedShapes> auto& loaded) {
     return std::tie(loaded.shapes, loaded.geometry, loaded.poses, loaded.parents, loaded.end_poses, loaded.padding,
                     loaded.groups, loaded.masks);

@@ -238,9 +238,10 @@ bool is_body(std::string_view identifier) {
 
 /// Returns whether Assimp leaves out elements of a type, although they have a body.
 bool is_left_out(const StepInstance& instance) {
-    constexpr std::array<std::string_view, 6> types = {"IFCOPENING",        "IFCSPACE", "IFCVOIDINGFEATURE",
-                                                       "IFCVIRTUALELEMENT", "IFCGRID",  "IFCANNOTATION"};
-    return std::any_of(types.begin(), types.end(), [&](std::string_view type) { return instance.is(type, true); });
+    constexpr std::array<std::string_view, 7> types = {"IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE", "IFCSPACE",
+                                                       "IFCVOIDINGFEATURE", "IFCVIRTUALELEMENT",      "IFCGRID",
+                                                       "IFCANNOTATION"};
+    return std::any_of(types.begin(), types.end(), [&](std::string_view type) { return instance.is(type); });
 }
 
 /// Collects the facts of an IfcText.
@@ -253,6 +254,7 @@ public:
         }
         add_materials();
         add_bodies();
+        text_.schema = ifc_schema(step);
         text_.complete = step.rfind("END-ISO-10303-21") != std::string_view::npos;
         return std::move(text_);
     }
@@ -329,7 +331,7 @@ private:
             const auto& shapes = definition->second;
             if (std::any_of(shapes.begin(), shapes.end(),
                             [&](std::string_view shape) { return body_representations_.contains(shape); }))
-                text_.bodies.emplace(product.id, product.type);
+                text_.bodies.push_back({std::string(product.id), std::string(product.type)});
         }
     }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 namespace octopair::io {
 
@@ -27,14 +28,22 @@ std::optional<IfcElement> parse_ifc_element(std::string_view node_name);
 /// Maps the GlobalId of an element to a text in UTF-8.
 using IfcTexts = std::unordered_map<std::string, std::string>;
 
+/// An element with a body.
+struct IfcBody {
+    std::string id, type;  ///< GlobalId, and class in capitals, for example "IFCWALL"
+
+    bool operator==(const IfcBody&) const = default;
+};
+
 /// Facts that the text of an IFC file has and Assimp does not pass on.
 struct IfcText {
     IfcTexts names;      ///< names of the elements that have one
     IfcTexts materials;  ///< names of the materials that are associated with an element, joined by ", "
-    /// Types of the elements that have a body: a representation that is no axis, footprint or the like. Openings, spaces and grids are left
-    /// out, because Assimp leaves them out.
-    IfcTexts bodies;
+    /// Elements that have a body: a representation that is no axis, footprint or the like. They are in the order of the file. Openings,
+    /// spaces and grids are left out, because Assimp leaves them out.
+    std::vector<IfcBody> bodies;
     std::map<std::string, std::uint64_t> left_out;  ///< number of elements with a shape that Assimp leaves out, by type
+    std::string schema;             ///< name of the schema, for example "IFC2X3"; empty if there is none
     double largest_coordinate = 0;  ///< largest absolute coordinate of all points, in the unit of the file
     bool complete = false;          ///< false: the text ends before the end of a STEP file
 };

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include <assimp/metadata.h>
 #include <fmt/format.h>
 
+#include "io/files/letter_case.hpp"
 #include "io/formats/format_table.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 
@@ -29,39 +31,49 @@ std::string unchecked_format(const MeshFile& file) {
         name);
 }
 
-/// Returns the GlobalIds of the elements that instances belong to. An empty id stands for elements with a cut name.
-std::unordered_set<std::string> elements_read(const MeshFile& file) {
-    std::unordered_set<std::string> ids;
+/// Counts the elements that instances belong to, by GlobalId. Several elements may have the same id. An empty id stands for elements whose
+/// node has a cut name.
+std::unordered_map<std::string, std::uint64_t> elements_read(const MeshFile& file) {
+    std::unordered_map<std::string, std::uint64_t> counts;
+    std::unordered_set<const aiNode*> seen;
     for (const MeshInstance& instance : file.instances()) {
         for (const aiNode* node = instance.node; node != nullptr; node = node->mParent) {
             const auto element = parse_ifc_element({node->mName.C_Str(), node->mName.length});
             if (!element) continue;
-            ids.emplace(element->id);
+            if (seen.insert(node).second) ++counts[std::string(element->id)];
             break;
         }
     }
-    return ids;
+    return counts;
+}
+
+/// Returns the id of an element, and its name if it has one.
+std::string id_and_name(const IfcBody& body, const IfcText& text) {
+    const auto name = text.names.find(body.id);
+    return name == text.names.end() ? body.id : fmt::format("{} ('{}')", body.id, name->second);
+}
+
+void add_lost(const std::string& file, const IfcBody& body, const IfcText& text, std::vector<LostElements>& lost) {
+    const auto same =
+        std::find_if(lost.begin(), lost.end(), [&](const LostElements& known) { return known.type == body.type; });
+    if (same != lost.end()) {
+        ++same->count;
+    } else {
+        lost.push_back({file, body.type, 1, id_and_name(body, text)});
+    }
 }
 
 /// Returns a warning about elements of an IFC file that have a body but no instance, or an empty text.
 std::string lost_elements(const MeshFile& file) {
-    const IfcText& text = file.ifc_text();
-    if (text.bodies.empty()) return {};
-    const std::unordered_set<std::string> read = elements_read(file);
-    if (read.contains("")) return {};  // which elements were read is unknown
-    std::vector<std::string> lost;
-    for (const auto& [id, type] : text.bodies) {
-        if (!read.contains(id)) lost.push_back(id);
+    const ElementCounts elements = elements_of(file);
+    if (elements.lost.empty()) return {};
+    std::string types;
+    for (const LostElements& lost : elements.lost) {
+        types += fmt::format("{}{} {}, the first is {}", types.empty() ? "" : "; ", lost.count, lost.type, lost.first);
     }
-    if (lost.empty()) return {};
-    const std::string& first = *std::min_element(lost.begin(), lost.end());
-    const auto name = text.names.find(first);
-    return fmt::format(
-        "{}: {} of {} elements with a body were not read, for example {} {}{}; Assimp knows only IFC2x3: export the "
-        "model as "
-        "IFC2x3, glTF or OBJ",
-        file.path(), lost.size(), text.bodies.size(), text.bodies.at(first), first,
-        name == text.names.end() ? "" : fmt::format(" ('{}')", name->second));
+    return fmt::format("{}: {} of {} elements with geometry were not read: {}. Export the model as {}glTF or OBJ",
+                       file.path(), elements.with_geometry - elements.read, elements.with_geometry, types,
+                       in_upper_case(file.ifc_text().schema) == "IFC2X3" ? "" : "IFC2x3, ");
 }
 
 /// Returns what the importer of DirectX left out: corners beyond the vertices. Only binary files have them: a text is checked before.
@@ -92,6 +104,28 @@ std::vector<std::string> import_warnings(const MeshFile& file) {
     }
     std::erase(warnings, "");
     return warnings;
+}
+
+ElementCounts elements_of(const MeshFile& file) {
+    constexpr std::size_t long_name = 900;  // bytes; the name of the node may be cut, so it may have no id
+    const IfcText& text = file.ifc_text();
+    ElementCounts elements;
+    auto read = elements_read(file);
+    for (const IfcBody& body : text.bodies) {
+        const auto name = text.names.find(body.id);
+        const bool is_long = name != text.names.end() && name->second.size() >= long_name;
+        std::uint64_t& same = read[body.id];
+        std::uint64_t& cut = read[std::string()];
+        ++elements.with_geometry;
+        if (same > 0 || (is_long && cut > 0)) {
+            --(same > 0 ? same : cut);
+            ++elements.read;
+        } else {
+            add_lost(file.path(), body, text, elements.lost);
+        }
+    }
+    for (const auto& [type, count] : text.left_out) elements.left_out.push_back({type, count});
+    return elements;
 }
 
 std::vector<std::string> left_out_of(const MeshFile& file) {

@@ -101,6 +101,7 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
     scene.largest_rounded = file.largest_rounded();
     scene.space = space_of(file);
     scene.warnings = import_warnings(file);
+    scene.elements = elements_of(file);
     scene.not_read = left_out_of(file);
     file.crossing_faces().append_warning(path, scene.warnings);
     return scene;

@@ -46,6 +46,9 @@ shape::Mesh whole_mesh_of(const MeshFile& file);
 /// Returns warnings about the file, each a line "FILE: ...": whether octopair checks the format, and the content that was not read.
 std::vector<std::string> import_warnings(const MeshFile& file);
 
+/// Counts the elements of an IFC file, and those of them that have an instance.
+ElementCounts elements_of(const MeshFile& file);
+
 /// Returns the content that was not read, for LoadedScene::not_read.
 std::vector<std::string> left_out_of(const MeshFile& file);
 
