@@ -17,6 +17,7 @@
 #include "io/files/file_mapping.hpp"
 #include "io/formats/format_choice.hpp"
 #include "io/object_details.hpp"
+#include "io/object_relations.hpp"
 #include "octopair/filters.hpp"
 #include "octopair/objects.hpp"
 #include "octopair/shapes.hpp"
@@ -89,6 +90,7 @@ struct LoadedScene {
     double largest_rounded = 0;
     std::vector<std::string> names;  ///< empty, or one name per object; an object without a name has an empty one
     ObjectDetails details;           ///< empty, or a row per object
+    ObjectRelations relations;       ///< empty, or an element per object; empty for triangles
     SceneSpace space;                ///< axes and unit of the coordinates
     /// Warnings of the readers, for example that a part of a file was not read. Each is one line "FILE: ...".
     std::vector<std::string> warnings;

@@ -185,6 +185,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     std::size_t before = 0;
     for (const LoadedScene& scene : scenes) {
         append_details(joined.details, scene.details, {before, std::size_t(scene.objects)});
+        append_relations(joined.relations, scene.relations, {before, std::size_t(scene.objects)});
         before += std::size_t(scene.objects);
     }
     if (named) {

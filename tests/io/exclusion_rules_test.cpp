@@ -40,6 +40,32 @@ TEST(ExclusionRules, MayBeAboutDetails) {
     EXPECT_EQ(rules.exclude[0].b, b);
 }
 
+TEST(ExclusionRules, MayBeAboutRelations) {
+    const auto rules = io::parse_exclusion_rules(
+        R"({"exclude": [{"relation": "fills"}, {"a": "x", "b": "y"}, {"relation": "system"}]})", "r.json");
+    EXPECT_EQ(rules.exclude.size(), 1u);
+    ASSERT_EQ(rules.relations.size(), 2u);
+    EXPECT_EQ(rules.relations[0].relation, io::Relation::fills);
+    EXPECT_EQ(rules.relations[1].relation, io::Relation::system);
+    EXPECT_EQ(rules.relations[1].place, "r.json: exclude[2]");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"relation": "near"}]})"),
+              "r.json: exclude[0]: relation: unknown relation 'near'; known relations: fills, assembly, system");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"relation": 1}]})"),
+              "r.json: exclude[0]: relation: a number, not a string");
+    EXPECT_EQ(rules_refusal(R"({"exclude": [{"relation": "fills", "a": "*"}]})"),
+              "r.json: exclude[0]: unknown key 'a'; known keys: relation");
+}
+
+TEST(ExclusionRules, MayBeWordsOfRelations) {
+    const auto rules = io::relation_rules("assembly,fills");
+    ASSERT_TRUE(rules);
+    ASSERT_EQ(rules->relations.size(), 2u);
+    EXPECT_EQ(rules->relations[0].relation, io::Relation::assembly);
+    EXPECT_EQ(rules->relations[1].place, "--exclude");
+    for (const char* file : {"", "rules.json", "fills,", ",fills", "fills,rules.json", "Fills"})
+        EXPECT_FALSE(io::relation_rules(file)) << file;
+}
+
 TEST(ExclusionRules, MayBeLeftOut) {
     const auto rules = io::parse_exclusion_rules("{}", "r.json");
     EXPECT_TRUE(rules.exclude.empty());
@@ -59,7 +85,7 @@ TEST(ExclusionRules, NameThePlace) {
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": 1, "b": "*"}]})"),
               "r.json: exclude[0]: a: a number, not a string or an object");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": "*", "b": "*", "c": 1}]})"),
-              "r.json: exclude[0]: unknown key 'c'; known keys: a, b");
+              "r.json: exclude[0]: unknown key 'c'; known keys: a, b, relation");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": {"kind": "x"}, "b": "*"}]})"),
               "r.json: exclude[0]: a: unknown key 'kind'; known keys: name, label, type, id, parent, level, material");
     EXPECT_EQ(rules_refusal(R"({"exclude": [{"a": {}, "b": "*"}]})"),

@@ -276,6 +276,49 @@ TEST(Ifc, CountsOfSeveralFilesAreAdded) {
     EXPECT_EQ(sum.left_out[1].type, "IFCGRID");
 }
 
+TEST(Ifc, LinksOfElementsAreRead) {
+    const auto id = [](const char* word) { return "'" + ifc_id(word) + "'"; };
+    const std::string text =
+        "#1=IFCPROJECT(" + id("p") + ",$,$,$,$,$,$,$,$);#2=IFCBUILDING(" + id("b") + ");#3=ifcwall(" + id("w") +
+        ");#4=IFCOPENINGELEMENT(" + id("o") + ");#5=IFCDOOR(" + id("d") + ");#6=IFCSTAIR(" + id("s") +
+        ");#7=IFCSTAIRFLIGHT(" + id("f") + ");#8=IFCELECTRICALCIRCUIT(" + id("c") + ");#9=IFCZONE(" + id("z") +
+        ");\n#10=IFCOWNERHISTORY($);" + "#11=IFCRELAGGREGATES(" + id("1") + ",#10,$,$,#1,(#2));#12=IFCRELAGGREGATES(" +
+        id("2") + ",#10,'#3',$,#6,(#7,#5));#13=IFCRELVOIDSELEMENT(" + id("3") + ",$,$,$,#3,#4);" +
+        "#14=IFCRELFILLSELEMENT(" + id("4") + ",#10,$,$,#4,#5);#15=IFCRELASSIGNSTOGROUP(" + id("5") +
+        ",#10,$,$,(#5,#7),$,#8);#16=IFCRELASSIGNSTOGROUP(" + id("6") + ",#10,$,$,(#3),$,#9);" +
+        "#17=IFCRELFILLSELEMENT(" + id("7") + ",$,$,$,#99,#5);#18=IFCRELAGGREGATES(" + id("8") +
+        ",$,$,$,#6,());END-ISO-10303-21;";
+    const io::IfcText read = io::read_ifc_text(text);
+    using Links = std::vector<io::IfcLink>;
+    EXPECT_EQ(read.project, ifc_id("p"));
+    EXPECT_EQ(read.links[std::size_t(io::Relation::fills)], (Links{{ifc_id("d"), ifc_id("w")}}));
+    EXPECT_EQ(read.links[std::size_t(io::Relation::assembly)],
+              (Links{{ifc_id("f"), ifc_id("s")}, {ifc_id("d"), ifc_id("s")}}));
+    EXPECT_EQ(read.links[std::size_t(io::Relation::system)],
+              (Links{{ifc_id("d"), ifc_id("c")}, {ifc_id("f"), ifc_id("c")}}));
+}
+
+TEST(Ifc, RelationsOfSeveralFilesAreAppended) {
+    io::ObjectRelations first;
+    first.keys = {"", "p/d", "p/w"};
+    first.elements = {1, 2};
+    first.links[0] = {{1, 2}};
+    io::ObjectRelations second;
+    second.keys = {"", "p/w", "q/s"};
+    second.elements = {2, 0, 1};
+    second.links[1] = {{1, 2}};
+    io::append_relations(first, second, {2, 3});
+    EXPECT_EQ(first.keys, (std::vector<std::string>{"", "p/d", "p/w", "q/s"}));
+    EXPECT_EQ(first.elements, (std::vector<std::uint32_t>{1, 2, 3, 0, 2}));
+    EXPECT_EQ(first.links[0], (std::vector<io::Link>{{1, 2}}));
+    EXPECT_EQ(first.links[1], (std::vector<io::Link>{{2, 3}}));
+    io::append_relations(first, {}, {5, 1});
+    EXPECT_EQ(first.elements.size(), 6u);
+    io::ObjectRelations none;
+    io::append_relations(none, {}, {1, 1});
+    EXPECT_TRUE(none.empty());
+}
+
 TEST(Ifc, TheSchemaIsARemedy) {
     EXPECT_EQ(io::ifc_schema(model), "IFC2X3");
     EXPECT_EQ(io::ifc_schema("FILE_SCHEMA (\n('IFC4X3_ADD2'));"), "IFC4X3_ADD2");

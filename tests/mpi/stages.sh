@@ -52,6 +52,35 @@ with open("folds.off", "w") as f:
         for k in range(side - 1):
             at = i * side + k
             f.write(f"3 {at} {at + 1} {at + side}\n3 {at + 1} {at + side + 1} {at + side}\n")
+lines = []
+def ifc(instance):
+    lines.append(f"#{len(lines) + 1}={instance};")
+    return f"#{len(lines)}"
+def guid(): return f"'{len(lines):022}'"
+for instance in ("PERSON($,'n',$,$,$,$,$,$)", "ORGANIZATION($,'o',$,$,$)", "PERSONANDORGANIZATION(#1,#2,$)",
+                 "APPLICATION(#2,'1','a','a')", "OWNERHISTORY(#3,#4,$,.ADDED.,$,$,$,0)",
+                 "SIUNIT(*,.LENGTHUNIT.,$,.METRE.)", "UNITASSIGNMENT((#6))", "CARTESIANPOINT((0.,0.,0.))",
+                 "AXIS2PLACEMENT3D(#8,$,$)", "GEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-5,#9,$)",
+                 "PROJECT('0000000000000000000001',#5,'P',$,$,$,$,(#10),#7)", "LOCALPLACEMENT($,#9)",
+                 "BUILDING('0000000000000000000002',#5,'B',$,$,#12,$,$,.ELEMENT.,$,$,$)",
+                 "RELAGGREGATES('0000000000000000000003',#5,$,$,#11,(#13))", "DIRECTION((0.,0.,1.))"):
+    ifc("IFC" + instance)
+def element(kind, x, width, more=""):  # a box of 1 in y and z
+    place = ifc(f"IFCAXIS2PLACEMENT2D({ifc(f'IFCCARTESIANPOINT(({x},0.))')},$)")
+    solid = ifc(f"IFCEXTRUDEDAREASOLID({ifc(f'IFCRECTANGLEPROFILEDEF(.AREA.,$,{place},{width},1.)')},#9,#15,1.)")
+    body = ifc(f"IFCSHAPEREPRESENTATION(#10,'Body','SweptSolid',({solid}))")
+    shape = ifc(f"IFCPRODUCTDEFINITIONSHAPE($,$,({body}))")
+    return ifc(f"{kind}({guid()},#5,'e',$,$,#12,{shape},${more})")
+wall = element("IFCWALL", 0., 20.)
+doors = [element("IFCDOOR", float(i), 1.5, ",$,$") for i in range(8)]
+for door in doors[:-1]:
+    opening = ifc(f"IFCOPENINGELEMENT({guid()},#5,$,$,$,#12,$,$)")
+    ifc(f"IFCRELVOIDSELEMENT({guid()},#5,$,$,{wall},{opening})")
+    ifc(f"IFCRELFILLSELEMENT({guid()},#5,$,$,{opening},{door})")
+ifc(f"IFCRELCONTAINEDINSPATIALSTRUCTURE({guid()},#5,$,$,({','.join([wall, *doors])}),#13)")
+with open("model.ifc", "w") as f:
+    f.write("ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
+            "FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n" + "\n".join(lines) + "\nENDSEC;\nEND-ISO-10303-21;\n")
 text = "{'descr': '<f8', 'fortran_order': False, 'shape': (301,), }"
 text += " " * (63 - (10 + len(text)) % 64) + "\n"
 with open("padding.npy", "wb") as f:
@@ -72,6 +101,10 @@ same_results 2 found.csv moving.json --stage objects --same-parent exclude
 same_results 3 pairs.csv shapes.json --stage pairs
 same_results 2 pairs.npy shapes.json --stage pairs --exclude rules.json
 same_results 3 found.jsonl folds.off --objects triangle --stage features --adjacent include
+if "$program" info | grep -q 'mesh scenes'; then
+    same_results 2 found.jsonl model.ifc --exclude fills
+    [ "$(wc -l < local.found.jsonl)" = 8 ] || fail "a pair of a door and its wall is in the result, or another is not"
+fi
 [ "$("$program" detect others.json --quiet)" = "$(on_ranks 2 detect others.json --engine mpi --quiet)" ] ||
     fail "ranks print other pairs"
 

@@ -48,7 +48,7 @@ struct DetectReport {
     std::uint64_t open_objects = 0;           ///< objects whose geometry is not closed
     std::vector<std::string> first_open;      ///< names of the first open objects
     io::ElementCounts elements;               ///< elements of IFC models among the inputs
-    std::vector<std::string> warnings;        ///< results of input_warnings()
+    std::vector<std::string> warnings;        ///< about the inputs, and about rules; each one line
     std::optional<io::ChangeCounts> changes;  ///< nothing without --baseline
     std::optional<EventCounts> events;  ///< nothing without --events; with it, `entries` and `steps` are not known
     std::uint64_t entries = 0;
@@ -59,6 +59,9 @@ struct DetectReport {
     /// Adds the counts and seconds of the call for a frame. `written`: seconds of the call that were spent in writing.
     void add(const Summary& summary, double written);
     void add(const PipelineSummary& summary, double written);
+    void add_warnings(const std::vector<std::string>& added) {
+        warnings.insert(warnings.end(), added.begin(), added.end());
+    }
     /// Adds a property that a check did not cover. Empty: none.
     void add_not_checked(std::string_view what);
 

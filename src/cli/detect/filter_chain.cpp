@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/detect/pipeline_options.hpp"
+#include "cli/detect/relation_filter.hpp"
 #include "cli/input/shaped_set.hpp"
 #include "io/files/failure.hpp"
 #include "io/json/exclusion_rules.hpp"
@@ -51,6 +52,7 @@ public:
         if (request_.pipeline.same_parent.value_or(rules.same_parent)) add_parents();
         if (!rules.ignored_pairs.empty()) add_ignored(rules);
         if (!rules.exclude.empty()) add_rules(rules.exclude);
+        if (!rules.relations.empty()) add_filter(make_relation_filter(rules.relations, sets_));
         return any_;
     }
 
@@ -149,10 +151,12 @@ private:
     const SetPair& sets_;
 };
 
-/// Reads the rules of --exclude; without the option, returns no rules. Throws: Error{bad_input, io_failed}.
+/// Returns the rules of --exclude: relations, or those of a file; without the option, returns no rules. Throws: Error{bad_input, io_failed}.
 io::ExclusionRules read_exclusions(const DetectRequest& request) {
     const std::string& file = request.pipeline.exclude;
-    return file.empty() ? io::ExclusionRules() : io::read_exclusion_rules(file);
+    if (file.empty()) return {};
+    if (auto relations = io::relation_rules(file)) return std::move(*relations);
+    return io::read_exclusion_rules(file);
 }
 
 /// Adds the filters of --exclude, of --same-parent, and of the groups in scene files. The pipeline borrows from the sets.
@@ -178,9 +182,12 @@ public:
         }
         const io::ExclusionRules rules = read_exclusions(request);
         add_exclusions(pipeline_, rules, request, sets);
+        warnings_ = relation_warnings(rules.relations, sets);
         if (request.verify) has_exclusions_ = add_exclusions(exclusions_, rules, request, sets);
         if (stage_of(request) != Stage::pairs) add_exact(request);
     }
+
+    const std::vector<std::string>& warnings() const override { return warnings_; }
 
     PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                         const Options& options) override {
@@ -266,6 +273,7 @@ private:
     Pipeline pipeline_;
     Pipeline exclusions_;  // the exclusion rules alone, with --verify
     bool has_exclusions_ = false;
+    std::vector<std::string> warnings_;
 };
 
 }  // namespace

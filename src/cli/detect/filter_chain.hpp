@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "cli/detect/detection.hpp"
@@ -16,6 +17,8 @@ namespace octopair::cli {
 class FilterChain {
 public:
     virtual ~FilterChain() = default;
+    /// Returns warnings about rules that can leave out nothing, each one line.
+    virtual const std::vector<std::string>& warnings() const = 0;
     /// Finds the pairs of a frame, filters them, and passes the result to `sink`. With an empty sink, it counts only.
     virtual PipelineSummary run(Engine& engine, std::uint64_t frame, const CollisionSink& sink,
                                 const Options& options) = 0;

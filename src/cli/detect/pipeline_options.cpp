@@ -80,7 +80,9 @@ void add_stage_options(Command& command, PipelineRequest& request) {
     add_stage_option(
         command, request,
         "last stage: pairs of boxes, objects that meet (default for meshes and .json), features (contacts)");
-    command.add_option("--exclude", request.exclude, "leave out pairs by rules on names, see docs/formats.md")
+    command
+        .add_option("--exclude", request.exclude,
+                    "leave out pairs by rules on names or relations, see docs/formats.md; or fills,assembly,system")
         .type_name("RULES.json");
     command
         .add_option(

@@ -17,6 +17,7 @@
 #include "cli/input/search_inputs.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats/format_choice.hpp"
+#include "io/json/exclusion_rules.hpp"
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
 
@@ -107,7 +108,7 @@ Facts input_facts(const DetectRun& run) {
         add_file(facts, fmt::format("input {}", i + 1), request.inputs[i], run);
     add_file(facts, "--against", request.against, run);
     add_file(facts, "--padding", request.padding, run);
-    add_file(facts, "--exclude", request.pipeline.exclude, run);
+    if (!io::relation_rules(request.pipeline.exclude)) add_file(facts, "--exclude", request.pipeline.exclude, run);
     add_file(facts, "--baseline", request.pipeline.baseline, run);
     return facts;
 }

@@ -44,6 +44,8 @@ public:
     /// applies to all ranks together. Returns the sums over all ranks, without the search. The seconds are those of this rank.
     PipelineSummary run(const PairList& pairs, const Options& options, CollisionPiece* kept);
 
+    const std::vector<std::string>& warnings() const { return filters_->warnings(); }
+
 private:
     /// Replaces `summary` by the sums over all ranks. Returns how many collisions this rank keeps under the limit.
     std::uint64_t join(PipelineSummary& summary, const Options& options);
@@ -142,6 +144,7 @@ public:
             run_.progress.show("preparing", 0);
             filters_.emplace(run_.request, cluster_,
                              SetPair{run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr}, run_.stop);
+            run_.report.add_warnings(filters_->warnings());
         }
 #endif
         if (run_.request.count_only) return;

@@ -79,6 +79,7 @@ public:
             run_.progress.show("preparing", 0);
             filters_ = make_filter_chain(run_.request, {run_.inputs.first, run_.join() ? &run_.inputs.second : nullptr},
                                          run_.stop);
+            run_.report.add_warnings(filters_->warnings());
         }
 #endif
         if (run_.request.count_only) return;

@@ -86,7 +86,8 @@ public:
     io::LoadedScene read(const io::ObjectRows& rows, const std::stop_token& stop) {
         if (npy_) return npy_->read(rows, stop);
         io::LoadedScene part = std::move(whole_);
-        part.details = {};  // a slice has no details of objects
+        part.details = {};  // a slice has no details and no relations of objects
+        part.relations = {};
         const std::uint64_t objects = std::exchange(part.objects, rows.end - rows.begin);
         std::visit(
             [&](auto& boxes) {

@@ -18,8 +18,8 @@ concept Some = std::same_as<std::remove_const_t<Any>, T>;
 
 auto members(Some<io::LoadedScene> auto& scene) {
     return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.largest_rounded, scene.names,
-                    scene.details, scene.space, scene.warnings, scene.not_read, scene.elements, scene.shapes,
-                    scene.triangles);
+                    scene.details, scene.relations, scene.space, scene.warnings, scene.not_read, scene.elements,
+                    scene.shapes, scene.triangles);
 }
 auto members(Some<io::ElementCounts> auto& elements) {
     return std::tie(elements.with_geometry, elements.read, elements.lost, elements.left_out);
@@ -34,6 +34,9 @@ auto members(Some<io::LoadedTriangles> auto& loaded) {
     return std::tie(loaded.triangles, loaded.owners, loaded.owner_names, loaded.owner_details);
 }
 auto members(Some<io::ObjectDetails> auto& details) { return std::tie(details.words, details.rows); }
+auto members(Some<io::ObjectRelations> auto& relations) {
+    return std::tie(relations.keys, relations.elements, relations.links[0], relations.links[1], relations.links[2]);
+}
 auto members(Some<io::SceneSpace> auto& space) { return std::tie(space.up, space.unit); }
 auto members(Some<shape::ConvexHull> auto& hull) { return std::tie(hull.points); }
 auto members(Some<shape::Mesh> auto& mesh) { return std::tie(mesh.vertices, mesh.triangles); }

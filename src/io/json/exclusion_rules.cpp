@@ -1,6 +1,10 @@
 #include "io/json/exclusion_rules.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <span>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +20,13 @@ namespace octopair::io {
 namespace {
 
 using nlohmann::json;
+
+std::vector<std::string_view> relation_words() {
+    std::vector<std::string_view> words;
+    std::transform(all_relations.begin(), all_relations.end(), std::back_inserter(words),
+                   [](Relation relation) { return word_of(relation); });
+    return words;
+}
 
 std::string item(const std::string& place, std::size_t i) { return fmt::format("{}[{}]", place, i); }
 
@@ -39,10 +50,21 @@ ColumnPatterns patterns(const JsonFields& rule, std::string_view key) {
     return found;
 }
 
-ColumnRule rule(const json& value, const std::string& place) {
+/// A rule of the key "exclude".
+using AnyRule = std::variant<ColumnRule, RelationRule>;
+
+AnyRule rule(const json& value, const std::string& place) {
     const JsonFields fields(value, place);
-    fields.allow({"a", "b"});
-    return {patterns(fields, "a"), patterns(fields, "b")};
+    fields.allow({"a", "b", "relation"});
+    if (fields.find("relation") == nullptr) return ColumnRule{patterns(fields, "a"), patterns(fields, "b")};
+    fields.allow({"relation"});
+    const std::string word = fields.text("relation");
+    const auto relation = relation_of(word);
+    if (!relation) {
+        refuse(fields.place_of("relation"), fmt::format("unknown relation '{}'; known relations: {}", shown_text(word),
+                                                        fmt::join(relation_words(), ", ")));
+    }
+    return RelationRule{*relation, place};
 }
 
 std::array<std::string, 2> name_pair(const json& value, const std::string& place) {
@@ -69,9 +91,29 @@ ExclusionRules parse_exclusion_rules(std::string_view text, std::string_view fil
     const json root = parse_json(text, file);
     const JsonFields fields(root, std::string(file));
     fields.allow({"exclude", "ignored_pairs", "same_parent"});
-    ExclusionRules rules{each_of(fields, "exclude", rule), each_of(fields, "ignored_pairs", name_pair)};
+    ExclusionRules rules;
+    for (AnyRule& any : each_of(fields, "exclude", rule)) {
+        if (auto* const by_text = std::get_if<ColumnRule>(&any)) {
+            rules.exclude.push_back(std::move(*by_text));
+        } else {
+            rules.relations.push_back(std::move(std::get<RelationRule>(any)));
+        }
+    }
+    rules.ignored_pairs = each_of(fields, "ignored_pairs", name_pair);
     if (fields.find("same_parent") != nullptr) rules.same_parent = fields.boolean("same_parent");
     return rules;
+}
+
+std::optional<ExclusionRules> relation_rules(std::string_view words) {
+    ExclusionRules rules;
+    for (std::string_view rest = words;;) {
+        const std::size_t end = std::min(rest.find(','), rest.size());
+        const auto relation = relation_of(rest.substr(0, end));
+        if (!relation) return std::nullopt;
+        rules.relations.push_back({*relation, "--exclude"});
+        if (end == rest.size()) return rules;
+        rest.remove_prefix(end + 1);
+    }
 }
 
 ExclusionRules read_exclusion_rules(const std::string& path) {

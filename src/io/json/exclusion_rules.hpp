@@ -1,6 +1,7 @@
 // Exclusion rules: a JSON file that names pairs of objects to leave out of the result.
 //
-//     {"exclude": [{"a": "*/bolt*", "b": "*/nut*"}, {"a": {"type": "IfcBeam"}, "b": {"type": "IfcSlab", "level": "0.*"}}],
+//     {"exclude": [{"a": "*/bolt*", "b": "*/nut*"}, {"a": {"type": "IfcBeam"}, "b": {"type": "IfcSlab", "level": "0.*"}},
+//                 {"relation": "fills"}],
 //      "ignored_pairs": [["frame/door", "frame/hinge"]],
 //      "same_parent": true}
 //
@@ -8,11 +9,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/object_details.hpp"
+#include "io/object_relations.hpp"
 #include "octopair/filters.hpp"
 
 namespace octopair::io {
@@ -20,11 +23,21 @@ namespace octopair::io {
 /// Column of a rule: 0 is the name, and 1 + i is all_details[i] (object_details.hpp).
 constexpr std::size_t column_of(Detail detail) { return 1 + std::size_t(detail); }
 
+/// A rule that leaves out pairs of related elements.
+struct RelationRule {
+    Relation relation;
+    std::string place;  ///< for messages, for example "rules.json: exclude[2]"
+};
+
 struct ExclusionRules {
-    std::vector<ColumnRule> exclude;                        ///< patterns of the columns above
+    std::vector<ColumnRule> exclude;  ///< patterns of the columns above
+    std::vector<RelationRule> relations;
     std::vector<std::array<std::string, 2>> ignored_pairs;  ///< two exact names each
     bool same_parent = false;
 };
+
+/// Returns the rules of a list of relations, such as "fills,assembly"; nothing if a word is no relation.
+std::optional<ExclusionRules> relation_rules(std::string_view words);
 
 /// Reads the rules of a file.
 /// Throws: Error{bad_input, io_failed} that begins with the file and names the place in it, for example "exclude[2]: b".

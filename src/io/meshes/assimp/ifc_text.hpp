@@ -5,6 +5,7 @@
 // - Schema: Assimp reads only IFC2x3, and crashes on geometric types of other schemas.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,6 +13,8 @@
 #include <string_view>
 #include <unordered_map>
 #include <vector>
+
+#include "io/object_relations.hpp"
 
 namespace octopair::io {
 
@@ -35,6 +38,15 @@ struct IfcBody {
     bool operator==(const IfcBody&) const = default;
 };
 
+/// A link between two elements, or between an element and a system (io::Link), by their GlobalIds.
+struct IfcLink {
+    std::string from, to;
+
+    bool operator==(const IfcLink&) const = default;
+};
+/// Links by relation.
+using IfcLinks = std::array<std::vector<IfcLink>, all_relations.size()>;
+
 /// Facts that the text of an IFC file has and Assimp does not pass on.
 struct IfcText {
     IfcTexts names;      ///< names of the elements that have one
@@ -43,6 +55,8 @@ struct IfcText {
     /// spaces and grids are left out, because Assimp leaves them out.
     std::vector<IfcBody> bodies;
     std::map<std::string, std::uint64_t> left_out;  ///< number of elements with a shape that Assimp leaves out, by type
+    std::string project;                            ///< GlobalId of the project; empty if there is none
+    IfcLinks links;                                 ///< links between elements, and to systems
     std::string schema;             ///< name of the schema, for example "IFC2X3"; empty if there is none
     double largest_coordinate = 0;  ///< largest absolute coordinate of all points, in the unit of the file
     bool complete = false;          ///< false: the text ends before the end of a STEP file

@@ -96,6 +96,7 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
     } else {
         scene = node_scene(file);
         scene.details = details_of(file);
+        scene.relations = relations_of(file);
         if (content.shapes) scene.shapes = shapes_of(file);
     }
     scene.largest_rounded = file.largest_rounded();

@@ -143,6 +143,24 @@ ObjectDetails details_of(const MeshFile& file) {
     return details;
 }
 
+ObjectRelations relations_of(const MeshFile& file) {
+    ObjectRelations relations;
+    const IfcText& text = file.ifc_text();
+    if (text.bodies.empty()) return relations;
+    const std::string scope = (text.project.empty() ? file.path() : text.project) + '/';
+    KeyNumbers numbers(relations.keys);
+    for (std::size_t i = 0; i < text.links.size(); ++i) {
+        for (const auto& [from, to] : text.links[i])
+            relations.links[i].push_back({numbers.of(scope + from), numbers.of(scope + to)});
+    }
+    for (const MeshInstance& instance : file.instances()) {
+        const auto own = nearest_element(instance.node, [](const IfcElement&) { return true; });
+        relations.elements.push_back(own && !own->element.id.empty() ? numbers.of(scope + std::string(own->element.id))
+                                                                     : 0);
+    }
+    return relations;
+}
+
 LoadedShapes shapes_of(const MeshFile& file) {
     LoadedShapes loaded;
     std::map<std::vector<unsigned>, std::uint32_t> numbers;

@@ -28,6 +28,9 @@ namespace octopair::io {
 /// Returns the details of all instances, in their order.
 ObjectDetails details_of(const MeshFile& file);
 
+/// Returns the relations of the elements of an IFC file, and the element of each instance.
+ObjectRelations relations_of(const MeshFile& file);
+
 /// Returns the shapes and poses of all instances.
 /// Requires: the file was read with `triangles`.
 /// Throws: Error{resource_limit} if a shape has too many vertices for 32-bit indices.
