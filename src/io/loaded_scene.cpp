@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "io/formats/unit_change.hpp"
+
 namespace octopair::io {
 
 namespace {
@@ -48,6 +50,12 @@ void ElementCounts::add(const ElementCounts& others) {
                                        [&](const TypeCount& known) { return known.type == other.type; });
         same != left_out.end() ? same->count += other.count : left_out.emplace_back(other).count;
     }
+}
+
+void LoadedScene::set_unit(const std::string& of_file, const std::string& wanted) {
+    const bool same = UnitChange(of_file, wanted).is_none();
+    space.unit = same ? of_file : wanted;
+    converted_from = same ? std::string() : of_file;
 }
 
 void LoadedShapes::append(LoadedShapes&& others) {

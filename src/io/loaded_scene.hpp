@@ -92,6 +92,7 @@ struct LoadedScene {
     ObjectDetails details;           ///< empty, or a row per object
     ObjectRelations relations;       ///< empty, or an element per object; empty for triangles
     SceneSpace space;                ///< axes and unit of the coordinates
+    std::string converted_from;      ///< unit that the file states, if its coordinates were converted to another
     /// Warnings of the readers, for example that a part of a file was not read. Each is one line "FILE: ...".
     std::vector<std::string> warnings;
     std::vector<std::string>
@@ -99,6 +100,9 @@ struct LoadedScene {
     ElementCounts elements;  ///< elements of IFC models
     std::optional<LoadedShapes> shapes;        ///< set if SceneContent::shapes is set and the file has shapes
     std::optional<LoadedTriangles> triangles;  ///< set if SceneContent::shapes is set and triangles are the objects
+
+    /// Sets the unit of the coordinates, which is `wanted` if they were converted to it from the unit of the file.
+    void set_unit(const std::string& of_file, const std::string& wanted);
 
     bool lacks_boxes() const {
         return objects > 0 && std::visit([](const auto& buffer) { return buffer.size() == 0; }, boxes);

@@ -74,12 +74,12 @@ void join_part(std::span<LoadedScene> scenes, std::optional<Part> LoadedScene::*
     }
 }
 
-/// Returns the axis and the unit that all scenes have in common. A value that differs becomes unknown.
+/// Returns the axis that all scenes have in common; unknown if they differ. The unit is that of the first scene that has one.
 SceneSpace joint_space(std::span<const LoadedScene> scenes) {
     SceneSpace space = scenes.front().space;
     for (const LoadedScene& scene : scenes) {
         if (scene.space.up != space.up) space.up = UpAxis::unknown;
-        if (scene.space.unit != space.unit) space.unit.clear();
+        if (space.unit.empty()) space.unit = scene.space.unit;
     }
     return space;
 }

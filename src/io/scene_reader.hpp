@@ -21,6 +21,8 @@ struct SceneContent {
     bool shapes = false;  ///< also read shapes or triangles, for the narrow phase
     /// Receives the part of a file that is read, from 0 to 1; or empty. Only readers of plain meshes call it.
     std::function<void(double)> progress = {};
+    /// Unit of the world. The coordinates of a file that states another unit are converted. Empty: the unit is that of the file.
+    std::string unit = {};
 };
 
 /// Reads a scene file. Throws: Error{bad_input, io_failed, resource_limit, cancelled} that begins with the file.

@@ -1,4 +1,5 @@
 // Tests building models: elements that are lost, rules by relations, units and places of several models.
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -7,6 +8,7 @@
 
 #include "cli/program.hpp"
 #include "io/ifc_model.hpp"
+#include "io/three_mf_reading.hpp"
 
 namespace octopair::test {
 namespace {
@@ -243,6 +245,138 @@ TEST_F(RelationRules, ARelationThatNoInputHasIsAWarning) {
                          "\nwarning     r.json: exclude[1]: no element of the inputs is part of another "
                          "(IfcRelAggregates); the rule 'assembly' leaves out nothing\n"));
     EXPECT_TRUE(has_text(run("detect c.obj --exclude fills -o p.csv").err, "the rule 'fills' leaves out nothing\n"));
+}
+
+/// A box in whole millimetres, from one corner to the other.
+using MillimetreBox = std::array<int, 6>;
+
+/// Returns a 3MF file with boxes. Its numbers are in its unit, "millimeter" or "meter".
+std::string three_mf_of(const std::string& unit, const std::vector<MillimetreBox>& boxes) {
+    std::string resources, items;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        std::string mesh = "<mesh><vertices>";
+        for (std::size_t corner = 0; corner < 8; ++corner) {
+            mesh += "<vertex";
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const int place = boxes[i][axis + (corner >> axis & 1) * 3];
+                const std::string text = unit == "meter" ? fmt::format("{}e-3", place) : fmt::format("{}", place);
+                mesh += fmt::format(" {}=\"{}\"", "xyz"[axis], text);
+            }
+            mesh += "/>";
+        }
+        mesh += "</vertices><triangles>";
+        for (const char* const corners :
+             {"021", "123", "456", "576", "014", "154", "236", "376", "042", "246", "135", "375"})
+            mesh += fmt::format("<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>", corners[0], corners[1], corners[2]);
+        resources += fmt::format("<object id=\"{}\" name=\"box {}\" type=\"model\">{}</triangles></mesh></object>",
+                                 i + 1, i, mesh);
+        items += fmt::format("<item objectid=\"{}\"/>", i + 1);
+    }
+    return package_of(model_text(resources, items, "unit=\"" + unit + "\""));
+}
+
+/// Boxes in a row that touch, overlap, or have gaps, by whole millimetres. Most places are no float64 in metres.
+std::vector<MillimetreBox> row_of_boxes(int first) {
+    std::vector<MillimetreBox> boxes;
+    for (int i = 0, place = first; i < 60; ++i) {
+        const int width = 37 + i * 53 % 71;
+        boxes.push_back({place, 3, -7, place + width, 203, 2507});
+        place += width + (i % 3 - 1);
+    }
+    return boxes;
+}
+
+class Units : public Federated {
+protected:
+    void SetUp() override {
+        write_file(file("fixed.3mf"), three_mf_of("meter", row_of_boxes(1009)));
+        write_file(file("fixed_mm.3mf"), three_mf_of("millimeter", row_of_boxes(1009)));
+        write_file(file("m.3mf"), three_mf_of("meter", row_of_boxes(1013)));
+        write_file(file("mm.3mf"), three_mf_of("millimeter", row_of_boxes(1013)));
+    }
+    std::string rows(const std::string& arguments) const {
+        const Outcome outcome = run("detect " + arguments + " -o r.jsonl");
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return content("r.jsonl");
+    }
+};
+
+TEST_F(Units, OneModelInTwoUnitsGivesTheSameRows) {
+    for (const std::string options :
+         {"", "--stage features", "--stage pairs", "--objects triangle --stage features",
+          "--objects triangle --stage pairs", "--margin 0.001 --engine processes --workers 2"}) {
+        const std::string together = rows("fixed.3mf m.3mf " + options),
+                          join = rows("fixed.3mf --against m.3mf " + options);
+        EXPECT_GT(join.size(), 1000u);
+        EXPECT_EQ(rows("fixed.3mf mm.3mf " + options), together) << options;
+        EXPECT_EQ(rows("fixed.3mf --against mm.3mf " + options), join) << options;
+    }
+    EXPECT_EQ(rows("mm.3mf fixed.3mf"), rows("mm.3mf fixed_mm.3mf"));
+    EXPECT_EQ(rows("mm.3mf fixed.3mf --stage features"), rows("mm.3mf fixed_mm.3mf --stage features"));
+}
+
+TEST_F(Units, TheResultHasTheUnitOfTheFirstInputThatHasOne) {
+    write_file(file("plain.obj"), "v 1 0 0\nv 2 0 0\nv 1 1 0\nf 1 2 3\n");
+    Outcome outcome = run("detect fixed.3mf mm.3mf -o p.csv --stats s.json");
+    EXPECT_TRUE(has_text(outcome.err, "\nunit        m; converted: mm.3mf from mm\n"));
+    json stats = json::parse(content("s.json"));
+    EXPECT_EQ(stats["unit"], "m");
+    EXPECT_EQ(stats["converted"], json::parse(R"([{"file": "mm.3mf", "from": "mm"}])"));
+    EXPECT_TRUE(has_text(run("detect mm.3mf m.3mf fixed.3mf -o p.csv").err,
+                         "\nunit        mm; converted: m.3mf from m, fixed.3mf from m\n"));
+    outcome = run("detect plain.obj --against mm.3mf -o p.csv --stats s.json");
+    EXPECT_TRUE(has_text(outcome.err, "\nunit        mm\n"));
+    EXPECT_FALSE(json::parse(content("s.json")).contains("converted"));
+    EXPECT_FALSE(has_text(run("detect plain.obj -o p.csv").err, "unit"));
+    EXPECT_TRUE(has_text(run("detect m.3mf -o p.csv").err, "\nunit        m\n"));
+}
+
+TEST_F(Units, AnInputWithoutAUnitIsAWarning) {
+    const std::string triangle = "v 1 0 0\nv 2 0 0\nv 1 1 0\nf 1 2 3\n";
+    write_file(file("plain.obj"), triangle);
+    write_file(file("other.obj"), triangle);
+    EXPECT_TRUE(has_text(run("detect plain.obj m.3mf -o p.csv").err,
+                         "\nwarning     plain.obj: no unit is stated; coordinates count as m, the unit of m.3mf\n"));
+    EXPECT_TRUE(
+        has_text(run("detect m.3mf plain.obj --against other.obj -o p.csv").err,
+                 "\nwarning     plain.obj and 1 more: no unit is stated; coordinates count as m, the unit of m.3mf\n"));
+    for (const std::string inputs : {"plain.obj other.obj", "m.3mf mm.3mf", "m.3mf"})
+        EXPECT_FALSE(has_text(run("detect " + inputs + " -o p.csv").err, "no unit")) << inputs;
+}
+
+TEST_F(Units, IfcMeetsOtherFormats) {
+    IfcModel model(".MILLI.");
+    model.add_box("IFCWALL", "wall", {1000, 0, 0, 3000, 200, 2500});
+    save("wall.ifc", model);
+    write_file(file("pipe.3mf"),
+               three_mf_of("millimeter", {{1900, -500, 900, 2000, 700, 1000}, {3001, 0, 0, 3100, 100, 100}}));
+    for (const std::string inputs : {"wall.ifc pipe.3mf", "wall.ifc --against pipe.3mf"})
+        EXPECT_EQ(run("detect " + inputs + " --count-only --quiet").out, "1\n") << inputs;
+    EXPECT_EQ(run("detect pipe.3mf wall.ifc --count-only --quiet").out, "1\n");
+    EXPECT_EQ(run("detect pipe.3mf wall.ifc --margin 1.1 --count-only --quiet").out, "2\n") << "in millimetres";
+    EXPECT_EQ(run("detect wall.ifc pipe.3mf --margin 0.0011 --count-only --quiet").out, "2\n") << "in metres";
+}
+
+TEST_F(Units, InputsThatDoNotMeetAreAWarning) {
+    write_file(file("far.3mf"), three_mf_of("meter", {{85000000, 446000000, 0, 85001000, 446001000, 1000}}));
+    write_file(file("near.3mf"), three_mf_of("meter", {{100000, 3, 0, 101000, 1000, 1000}}));
+    write_file(file("at.3mf"), three_mf_of("meter", {{1000, 100, 0, 2000, 1000, 1000}}));
+    const std::string near =
+        "\nwarning     at.3mf and near.3mf do not meet: they are 98 m apart. The box of the first begins at 1 0.1 0, "
+        "that of "
+        "the second at 100 0.003 0; check that both are exported with the same origin and the same unit\n";
+    EXPECT_TRUE(has_text(run("detect at.3mf near.3mf -o p.csv").err, near));
+    EXPECT_TRUE(has_text(run("detect at.3mf --against near.3mf -o p.csv").err, near));
+    EXPECT_FALSE(has_text(run("detect at.3mf near.3mf --margin 98 -o p.csv").err, "do not meet"));
+    EXPECT_TRUE(
+        has_text(run("detect at.3mf near.3mf far.3mf m.3mf -o p.csv").err, "same unit. 2 inputs meet no other\n"));
+    EXPECT_TRUE(
+        has_text(run("detect at.3mf m.3mf --against near.3mf -o p.csv").err, "at.3mf and near.3mf do not meet"));
+    EXPECT_FALSE(has_text(run("detect at.3mf near.3mf --against near.3mf -o p.csv").err, "near.3mf and near.3mf"));
+    EXPECT_FALSE(has_text(run("detect at.3mf m.3mf -o p.csv").err, "do not meet"));
+    save_boxes("a.npy", {0});
+    save_boxes("b.npy", {5});
+    EXPECT_FALSE(has_text(run("detect a.npy --against b.npy -o p.csv").err, "do not meet")) << "files of boxes";
 }
 
 #endif

@@ -55,6 +55,7 @@ LoadedScene full_scene() {
     io::DetailsBuilder(scene.details).add({"w", "wheel", "7", "car", "", "steel"});
     io::DetailsBuilder(scene.triangles->owner_details).add({"o", "", "", "", "", ""});
     scene.space = {io::UpAxis::y, "mm"};
+    scene.converted_from = "in";
     scene.relations.keys = {"", "p/d", "p/w"};
     scene.relations.elements = {1, 2};
     scene.relations.links = {{{{1, 2}}, {{2, 1}}, {{1, 1}}}};
@@ -72,6 +73,7 @@ TEST(SceneTransfer, AllThatASceneHoldsArrives) {
     EXPECT_EQ(scene.details.of(0, io::Detail::material), "steel");
     EXPECT_EQ(scene.details.rows, sent.details.rows);
     EXPECT_EQ(scene.space, sent.space);
+    EXPECT_EQ(scene.converted_from, "in");
     EXPECT_EQ(scene.relations.keys, sent.relations.keys);
     EXPECT_EQ(scene.relations.elements, sent.relations.elements);
     EXPECT_EQ(scene.relations.links, sent.relations.links);

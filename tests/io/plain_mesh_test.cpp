@@ -443,7 +443,7 @@ TEST(PlainMesh, ReadersTellTheirProgress) {
     EXPECT_LE(parts.back(), 1);
 }
 
-TEST(PlainMesh, JointScenesHaveTheSpaceThatAllHave) {
+TEST(PlainMesh, JointScenesHaveTheAxisOfAllAndTheUnitOfTheFirst) {
     const io::SceneSpace metres{io::UpAxis::y, "m"};
     const auto joint = [&](const io::SceneSpace& other) {
         std::vector<io::LoadedScene> scenes(2);
@@ -456,7 +456,7 @@ TEST(PlainMesh, JointScenesHaveTheSpaceThatAllHave) {
     };
     EXPECT_EQ(joint(metres), metres);
     EXPECT_EQ(joint({io::UpAxis::z, "m"}), (io::SceneSpace{io::UpAxis::unknown, "m"}));
-    EXPECT_EQ(joint({}), io::SceneSpace());
+    EXPECT_EQ(joint({}), (io::SceneSpace{io::UpAxis::unknown, "m"}));
 }
 
 }  // namespace

@@ -204,6 +204,18 @@ std::string exact_text(const DetectReport& report) {
                               report.open_objects > report.first_open.size() ? ", ..." : "");
 }
 
+/// Returns the line about the unit, with the inputs that were converted to it.
+std::string unit_text(const DetectReport& report) {
+    if (report.unit.empty()) return {};
+    constexpr std::size_t named = 3;
+    std::string converted;
+    for (std::size_t i = 0; i < std::min(report.converted.size(), named); ++i) {
+        const Part& part = report.converted[i];
+        converted += fmt::format("{}{} from {}", i == 0 ? "; converted: " : ", ", part.path, part.converted_from);
+    }
+    return fmt::format("unit        {}{}{}\n", report.unit, converted, report.converted.size() > named ? ", ..." : "");
+}
+
 /// Returns the line about the elements of IFC models: how many were read, and what is left out on purpose.
 std::string elements_text(const DetectReport& report) {
     const io::ElementCounts& elements = report.elements;
@@ -264,7 +276,7 @@ std::string summary_text(const DetectReport& report) {
         text += fmt::format("changes     {} new, {} same, {} gone\n", grouped(report.changes->begun),
                             grouped(report.changes->same), grouped(report.changes->gone));
     }
-    text += elements_text(report);
+    text += unit_text(report) + elements_text(report);
     for (const std::string& warning : report.warnings) text += fmt::format("warning     {}\n", warning);
     text += exact_text(report) + filters_text(report) + verified_text(report) + time_text(report);
     const double objects = double(report.objects) * double(report.frames);
@@ -296,6 +308,9 @@ std::string stats_json(const DetectReport& report) {
         stats["not_closed"] = report.open_objects;
         stats["undecided"] = undecided_pairs(report);
     }
+    if (!report.unit.empty()) stats["unit"] = report.unit;
+    for (const Part& part : report.converted)
+        stats["converted"].push_back({{"file", part.path}, {"from", part.converted_from}});
     if (report.elements.with_geometry > 0) stats["elements"] = elements_json(report.elements);
     if (!report.warnings.empty()) stats["warnings"] = report.warnings;
     if (report.changes) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/engine_choice.hpp"
+#include "cli/input/input_set.hpp"
 #include "io/loaded_scene.hpp"
 #include "io/results/baseline.hpp"
 #include "octopair/engine.hpp"
@@ -47,6 +48,8 @@ struct DetectReport {
     bool tolerance_is_precision = false;      ///< true: the tolerance is the error of rounding to float32
     std::uint64_t open_objects = 0;           ///< objects whose geometry is not closed
     std::vector<std::string> first_open;      ///< names of the first open objects
+    std::string unit;                         ///< unit of all lengths; empty if no input states one
+    std::vector<Part> converted;              ///< the inputs whose coordinates were converted to this unit
     io::ElementCounts elements;               ///< elements of IFC models among the inputs
     std::vector<std::string> warnings;        ///< about the inputs, and about rules; each one line
     std::optional<io::ChangeCounts> changes;  ///< nothing without --baseline

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "base/timed.hpp"
@@ -74,10 +75,19 @@ private:
             report_.warnings = input_warnings(request_, sets());
             for (const InputSet* set : {&inputs_.first, &inputs_.second}) report_.elements.add(set->scene.elements);
         }
+        describe_unit();
 #ifdef OCTOPAIR_WITH_PIPELINE
         describe_shapes();
 #endif
         searchers_.check_objects(run_);
+    }
+
+    void describe_unit() {
+        for (const InputSet* set : {&inputs_.first, &inputs_.second}) {
+            if (report_.unit.empty()) report_.unit = set->scene.space.unit;
+            std::copy_if(set->parts.begin(), set->parts.end(), std::back_inserter(report_.converted),
+                         [](const Part& part) { return !part.converted_from.empty(); });
+        }
     }
 
     SetPair sets() const { return {inputs_.first, run_.join() ? &inputs_.second : nullptr}; }

@@ -46,7 +46,8 @@ private:
         io::FrameCount frames = inputs_->frames();
         SetSizes sizes{inputs_->objects(), 0};
         if (!request_.against.empty()) {
-            against_.emplace(std::vector{request_.against}, io::SceneContent{request_.mesh_objects}, stop_);
+            against_.emplace(std::vector{request_.against},
+                             io::SceneContent{.objects = request_.mesh_objects, .unit = inputs_->unit()}, stop_);
             frames = joint_frames(frames, against_->frames(), request_);
             sizes.against = against_->objects();
         }

@@ -119,7 +119,10 @@ void read_slices(DetectRun& run, const Cluster& cluster) {
     const SliceRequest slice{own_slice(cluster), cluster.first()};
     InputSet &first = run.inputs.first, &second = run.inputs.second;
     first = read_input_slice(request.inputs, {request.mesh_objects}, slice, run.stop);
-    if (run.join()) second = read_input_slice({request.against}, {request.mesh_objects}, slice, run.stop);
+    if (run.join()) {
+        second = read_input_slice({request.against}, {.objects = request.mesh_objects, .unit = first.scene.space.unit},
+                                  slice, run.stop);
+    }
     run.inputs.frames =
         joint_frames({first.scene.frames, first.scene.moving}, {second.scene.frames, second.scene.moving}, request);
     run.inputs.padding.emplace(request, SetSizes{first.total, second.total}, run.stop);

@@ -23,6 +23,8 @@ public:
     std::uint64_t objects() const { return objects_; }
     /// Returns the files and their numbers of objects.
     std::span<const Part> parts() const { return still_.parts; }
+    /// Returns the unit of the coordinates; empty if unknown.
+    const std::string& unit() const { return still_.scene.space.unit; }
     const io::FrameCount& frames() const { return frames_; }
     /// Returns whether at least one file is float64.
     bool wide() const { return wide_; }

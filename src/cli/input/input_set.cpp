@@ -67,6 +67,12 @@ io::LoadedScene read_part(const std::string& path, const io::SceneContent& conte
     return isolated ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
 }
 
+Part part_of(const std::string& path, const io::LoadedScene& scene) {
+    const bool converted = !scene.converted_from.empty();
+    return {path, scene.objects, io::is_mesh_file(path) || io::is_json_file(path),
+            converted ? scene.converted_from : scene.space.unit, scene.converted_from};
+}
+
 /// A file from which a range of objects can be read. Only .npy files are read in part; others are read whole.
 class PartFile {
 public:
@@ -79,6 +85,10 @@ public:
         }
     }
 
+    Part part(const std::string& path) const {
+        return npy_ ? Part{path, npy_->shape().objects} : part_of(path, whole_);
+    }
+    const std::string& unit() const { return whole_.space.unit; }
     std::uint64_t objects() const { return npy_ ? npy_->shape().objects : whole_.objects; }
     bool wide() const { return npy_ ? npy_->wide() : std::holds_alternative<Buffer<Box3d>>(whole_.boxes); }
     std::vector<std::string> take_names() { return std::move(whole_.names); }
@@ -136,7 +146,8 @@ InputSet read_input_set(const std::vector<std::string>& paths, const io::SceneCo
             };
         }
         scenes.push_back(read_part(path, wanted, stop));
-        set.parts.push_back({path, scenes.back().objects});
+        set.parts.push_back(part_of(path, scenes.back()));
+        if (wanted.unit.empty()) wanted.unit = scenes.back().space.unit;
     }
     std::set<io::UpAxis> axes;
     for (const io::LoadedScene& scene : scenes) axes.insert(scene.space.up);
@@ -153,9 +164,11 @@ InputSet read_input_slice(const std::vector<std::string>& paths, const io::Scene
     std::vector<PartFile> files;
     bool wide = false;
     std::vector<std::string> names;
+    io::SceneContent in_unit = content;
     for (const std::string& path : paths) {
-        files.emplace_back(path, content, stop);
-        set.parts.push_back({path, files.back().objects()});
+        files.emplace_back(path, in_unit, stop);
+        if (in_unit.unit.empty()) in_unit.unit = files.back().unit();
+        set.parts.push_back(files.back().part(path));
         wide |= files.back().wide();
         const std::vector<std::string> part_names = files.back().take_names();
         if (!part_names.empty()) names.resize(std::size_t(set.total));

@@ -16,6 +16,9 @@ namespace octopair::cli {
 struct Part {
     std::string path;
     std::uint64_t objects;
+    bool is_model = false;            ///< false: a file of boxes
+    std::string unit = {};            ///< unit that the file states; empty if unknown
+    std::string converted_from = {};  ///< this unit, if the coordinates were converted to that of the set
 };
 
 class ShapedSet;
@@ -66,7 +69,8 @@ struct SetPair {
     const InputSet* second = nullptr;
 };
 
-/// Reads files as one set. Sets of JSON scenes, and of triangles read with SceneContent::shapes, have no boxes until
+/// Reads files as one set. The unit of the set is that of `content`, or without one that of the first file that states one. Files that state
+/// another unit are converted. Sets of JSON scenes, and of triangles read with SceneContent::shapes, have no boxes until
 /// make_shaped() computes them (shaped_set.hpp).
 /// Requires: no other thread of this process runs (isolated_read.hpp). So read all sets before make_shaped().
 /// Throws: what io::read_scene() and io::join_scenes() throw.

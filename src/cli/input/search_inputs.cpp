@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cli/detect/pipeline_options.hpp"
+#include "cli/input/placement.hpp"
 #include "io/boxes/npy.hpp"
 #include "io/files/failure.hpp"
 #include "octopair/error.hpp"
@@ -35,9 +36,11 @@ Paddings::Paddings(const DetectRequest& request, const SetSizes& sizes, const st
 }
 
 void WholeInputs::read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop) {
-    const io::SceneContent content{request.mesh_objects, has_filters(request),
-                                   [&progress](double done) { progress.show("reading", done); }};
+    io::SceneContent content{.objects = request.mesh_objects,
+                             .shapes = has_filters(request),
+                             .progress = [&progress](double done) { progress.show("reading", done); }};
     first = read_input_set(request.inputs, content, stop);
+    content.unit = first.scene.space.unit;
     if (!request.against.empty()) second = read_input_set({request.against}, content, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
     progress.show("preparing shapes", 0);
@@ -107,6 +110,7 @@ std::vector<std::string> input_warnings(const DetectRequest& request, const SetP
         mixed |= second->mixed_axes || differ(sets.first.scene.space.up, second->scene.space.up);
     if (mixed)
         warnings.emplace_back("the formats of the inputs have different axes up; coordinates are used as they are");
+    add_placement_warnings(sets, request.margin, warnings);
     return warnings;
 }
 

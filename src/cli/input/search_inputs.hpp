@@ -56,7 +56,8 @@ struct WholeInputs {
     void read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop);
 };
 
-/// Returns warnings, each one line: warnings of the readers, and about inputs without objects, coarse coordinates and different axes up.
+/// Returns warnings, each one line: warnings of the readers, and about inputs without objects, coarse coordinates, different axes up, missing units, and
+/// inputs that do not meet.
 /// Coordinates are coarse if the steps of float32, to which they were rounded, are large compared with the scene or the tolerance.
 /// Requires: the sets are whole and have boxes.
 std::vector<std::string> input_warnings(const DetectRequest& request, const SetPair& sets);

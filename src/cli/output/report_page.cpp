@@ -32,12 +32,13 @@ std::string joined(const std::vector<std::string>& words) {
     return all;
 }
 
-/// Returns the axis up and the unit: from the options if given, else from the formats of the inputs. Unknown if the formats differ.
+/// Returns the axis up and the unit: from the options if given, else from the inputs. The axis is unknown if the inputs differ. All inputs
+/// that state a unit have been converted to the unit of the first.
 io::SceneSpace report_space(const DetectRequest& request, const FoundIn& sets) {
     io::SceneSpace space = request.pipeline.space;
     const io::SceneSpace &first = sets.first.scene.space, &second = sets.second.scene.space;
     if (space.up == io::UpAxis::unknown && first.up == second.up) space.up = first.up;
-    if (space.unit.empty() && first.unit == second.unit) space.unit = first.unit;
+    if (space.unit.empty()) space.unit = first.unit.empty() ? second.unit : first.unit;
     return space;
 }
 

@@ -26,8 +26,9 @@ struct SubmitRequest {
     std::string id;
 };
 
-InputSet read_still_set(const std::vector<std::string>& paths, const DetectRequest& what, const std::stop_token& stop) {
-    InputSet set = read_input_set(paths, {what.mesh_objects}, stop);
+InputSet read_still_set(const std::vector<std::string>& paths, const io::SceneContent& content,
+                        const std::stop_token& stop) {
+    InputSet set = read_input_set(paths, content, stop);
     if (set.scene.moving)
         throw Error(ErrorCode::usage, paths.front() + ": the scene moves; a job can have only one frame");
     return set;
@@ -46,8 +47,10 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     const DetectRequest& what = request.what;
     ProgressLine progress(!what.quiet);
     JobClient client(request.server.address, client_options(request.server));
-    InputSet inputs = read_still_set(what.inputs, what, stop), against;
-    if (!what.against.empty()) against = read_still_set({what.against}, what, stop);
+    io::SceneContent content{.objects = what.mesh_objects};
+    InputSet inputs = read_still_set(what.inputs, content, stop), against;
+    content.unit = inputs.scene.space.unit;
+    if (!what.against.empty()) against = read_still_set({what.against}, content, stop);
 #ifdef OCTOPAIR_WITH_PIPELINE
     make_shaped(inputs, against, {}, stop);
 #endif

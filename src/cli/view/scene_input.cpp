@@ -161,8 +161,8 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
     double read_seconds = 0;
     {
         const Timed timed(read_seconds);
-        io::SceneContent content{request.detect.mesh_objects, false,
-                                 [&](double done) { progress.show("reading", done); }};
+        io::SceneContent content{.objects = request.detect.mesh_objects,
+                                 .progress = [&](double done) { progress.show("reading", done); }};
 #ifdef OCTOPAIR_WITH_PIPELINE
         content.shapes = true;
 #endif

@@ -84,6 +84,16 @@ Pose BoundedPose::value() const {
     return pose;
 }
 
+BoundedPose BoundedPose::converted(const io::UnitChange& change) const {
+    BoundedPose pose = *this;
+    for (auto& row : pose.rows_) {
+        auto& [value, error] = row[3];
+        value = change(value);
+        if (error != 0) error = rounding::next_above(change(error));
+    }
+    return pose;
+}
+
 double BoundedPose::largest_scale() const {
     double largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -11,6 +11,7 @@
 
 #include <array>
 
+#include "io/formats/unit_change.hpp"
 #include "octopair/pose.hpp"
 
 namespace octopair {
@@ -38,6 +39,9 @@ public:
     BoundedPoint apply(const Point3d& point) const;
     /// Returns the pose without its bounds.
     Pose value() const;
+    /// Returns the pose for points whose coordinates have been converted, too: its translation is converted, and then counts as exact, but
+    /// for the bound that it had.
+    BoundedPose converted(const io::UnitChange& change) const;
     /// Returns the largest factor by which the pose lengthens an axis.
     double largest_scale() const;
 

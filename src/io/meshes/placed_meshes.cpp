@@ -157,6 +157,22 @@ LoadedScene exact_triangle_scene(const WorldView& world) {
     return scene;
 }
 
+/// Converts all coordinates. Each of them is rounded once, as if the file had the other unit.
+void convert(PlacedMeshes& placed, const UnitChange& change) {
+    for (SharedMesh& mesh : placed.meshes) {
+        for (auto* const vertices : {&mesh.triangles.vertices, &mesh.loose}) {
+            for (Point3d& vertex : *vertices) std::transform(vertex.begin(), vertex.end(), vertex.begin(), change);
+        }
+    }
+    for (PlacedMesh& object : placed.objects) object.pose = object.pose.converted(change);
+}
+
+LoadedScene converted_scene(PlacedMeshes& placed, const SceneContent& content, ReadBudget& budget) {
+    if (content.objects == MeshObjects::node) return object_scene(placed, content.shapes, budget);
+    const WorldView world{placed, budget};
+    return content.shapes ? exact_triangle_scene(world) : triangle_scene(world);
+}
+
 }  // namespace
 
 void remove_unused_vertices(std::vector<Point3d>& vertices, std::span<std::uint32_t> corners) {
@@ -174,9 +190,11 @@ void remove_unused_vertices(std::vector<Point3d>& vertices, std::span<std::uint3
 }
 
 LoadedScene scene_of(PlacedMeshes& placed, const SceneContent& content, ReadBudget& budget) {
-    if (content.objects == MeshObjects::node) return object_scene(placed, content.shapes, budget);
-    const WorldView world{placed, budget};
-    return content.shapes ? exact_triangle_scene(world) : triangle_scene(world);
+    const UnitChange change(placed.unit, content.unit);
+    if (!change.is_none()) convert(placed, change);
+    LoadedScene scene = converted_scene(placed, content, budget);
+    scene.set_unit(placed.unit, content.unit);
+    return scene;
 }
 
 shape::Mesh whole_mesh_of(const PlacedMeshes& placed, ReadBudget& budget) {

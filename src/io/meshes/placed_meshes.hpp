@@ -45,10 +45,11 @@ struct PlacedMeshes {
     std::string_view noun;  ///< the word of the format for an object, for messages, for example "node"
     std::vector<SharedMesh> meshes;
     std::vector<PlacedMesh> objects;
+    std::string unit = {};  ///< unit of the vertices and the poses; empty if unknown
 };
 
-/// Returns the scene of all objects, or of all their triangles. The reader sets LoadedScene::largest_rounded,
-/// warnings and space. Takes the meshes and the names.
+/// Returns the scene of all objects, or of all their triangles, in the unit of `content`. The reader sets LoadedScene::largest_rounded,
+/// warnings and the axis. Takes the meshes and the names.
 /// Throws: Error{bad_input} that names the object, if a vertex in the world is not finite, or for triangles beyond the range of float32;
 /// Error{resource_limit, cancelled}.
 LoadedScene scene_of(PlacedMeshes& placed, const SceneContent& content, ReadBudget& budget);

@@ -135,10 +135,11 @@ std::vector<std::string> left_out_of(const MeshFile& file) {
     return left_out;
 }
 
-SceneSpace space_of(const MeshFile& file) {
-    SceneSpace result = format_space(file.path());
-    const aiMetadata* const facts = file.scene().mMetaData;
-    if (file.known().ending != ".fbx" || facts == nullptr) return result;
+SceneSpace MeshFile::space() const {
+    SceneSpace result = format_space(path_);
+    if (content_.unit) result.unit = *content_.unit;
+    const aiMetadata* const facts = scene_->mMetaData;
+    if (known_.ending != ".fbx" || facts == nullptr) return result;
     int up = -1, sign = 1;
     if (facts->Get("UpAxis", up) && (!facts->Get("UpAxisSign", sign) || sign > 0))
         result.up = up == 1 ? UpAxis::y : up == 2 ? UpAxis::z : UpAxis::unknown;

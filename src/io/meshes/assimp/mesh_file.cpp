@@ -93,7 +93,7 @@ public:
         std::vector<MeshInstance> instances;
         std::vector<MeshInstance> waiting;
         const aiNode& root = *scene_.mRootNode;
-        waiting.push_back({&root, name_of(root, 0), root_pose(root, file_.known()), translation_of(root)});
+        waiting.push_back({&root, name_of(root, 0), file_.world_pose(), file_.unit_change()(translation_of(root))});
         while (!waiting.empty()) {
             const MeshInstance at = std::move(waiting.back());
             waiting.pop_back();
@@ -128,12 +128,13 @@ private:
 
 }  // namespace
 
-MeshFile::MeshFile(const std::string& path, bool triangles)
+MeshFile::MeshFile(const std::string& path, bool triangles, std::string_view unit)
     : path_(path),
       known_(known_format(path)),
       ifc_text_(read_text_of_ifc(path, known_)),
       content_(check_mesh_content(path, known_)),
-      scene_(&import(path)) {
+      scene_(&import(path)),
+      change_(space().unit, unit) {
     used_vertices_.resize(scene_->mNumMeshes);
     instances_ = InstanceSearch(*scene_, *this).find();
     std::erase_if(instances_, [this](const MeshInstance& instance) { return !has_vertices(instance); });
@@ -202,8 +203,15 @@ void MeshFile::cut_faces() {
     }
 }
 
+BoundedPose MeshFile::world_pose() const {
+    const BoundedPose root = root_pose(*scene_->mRootNode, known_);
+    if (change_.is_none()) return root;
+    const double factor = change_.factor();
+    return BoundedPose({{{factor, 0, 0, 0}, {0, factor, 0, 0}, {0, 0, factor, 0}}}) * root;
+}
+
 double MeshFile::largest_rounded() const {
-    double largest = root_pose(*scene_->mRootNode, known_).largest_scale() * ifc_text_.largest_coordinate;
+    double largest = world_pose().largest_scale() * ifc_text_.largest_coordinate;
     for (const MeshInstance& instance : instances_) {
         double vertex_size = 0;
         for (const unsigned number : instance.meshes()) {

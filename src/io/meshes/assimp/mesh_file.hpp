@@ -18,6 +18,7 @@
 #include "base/memory.hpp"
 #include "io/files/input_file.hpp"
 #include "io/formats/format_choice.hpp"
+#include "io/formats/unit_change.hpp"
 #include "io/meshes/assimp/content/mesh_content.hpp"
 #include "io/meshes/assimp/ifc_text.hpp"
 #include "io/meshes/bounded_pose.hpp"
@@ -39,15 +40,21 @@ struct MeshInstance {
 class MeshFile {
 public:
     /// Reads a file. With `triangles`, faces with more than three corners are cut into triangles (FaceCutter).
+    /// Converts coordinates to `unit`, if it is not empty and the file states another unit.
     /// Throws: Error{bad_input} with Assimp's message if Assimp refuses the file, for a vertex index out of range, and if Assimp would place
     /// something wrongly (mesh_content.hpp); Error{io_failed}.
-    MeshFile(const std::string& path, bool triangles);
+    MeshFile(const std::string& path, bool triangles, std::string_view unit = {});
 
     /// Returns all instances, in pre-order of their nodes.
     const std::vector<MeshInstance>& instances() const { return instances_; }
     /// Returns LoadedScene::largest_rounded: Assimp rounds vertices and transforms to float32.
     double largest_rounded() const;
     const aiScene& scene() const { return *scene_; }
+    /// Returns the axes and the unit of the file: those of its format. AMF, FBX and X3D files may state their own.
+    SceneSpace space() const;
+    /// Returns the pose of the root node, in the unit of the world.
+    BoundedPose world_pose() const;
+    const UnitChange& unit_change() const { return change_; }
     const std::string& path() const { return path_; }
     const KnownFormat& known() const { return known_; }
     /// Returns the content that Assimp left out, as far as the text of the file shows it, for example "entities of type 3DSOLID (2)".
@@ -100,6 +107,7 @@ private:
     MeshContent content_;
     Assimp::Importer importer_;
     const aiScene* scene_;
+    UnitChange change_;
     std::vector<MeshInstance> instances_;
     std::vector<std::optional<std::vector<unsigned>>>
         used_vertices_;  // per mesh; empty until a node with the mesh is visited

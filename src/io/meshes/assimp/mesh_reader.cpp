@@ -89,7 +89,7 @@ bool is_mesh_ending(std::string_view ending) {
 
 LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content) {
     const bool by_triangle = content.objects == MeshObjects::triangle;
-    const MeshFile file(path, by_triangle || content.shapes);
+    const MeshFile file(path, by_triangle || content.shapes, content.unit);
     LoadedScene scene;
     if (by_triangle) {
         scene = content.shapes ? exact_triangle_scene(file) : triangle_scene(file);
@@ -100,7 +100,9 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
         if (content.shapes) scene.shapes = shapes_of(file);
     }
     scene.largest_rounded = file.largest_rounded();
-    scene.space = space_of(file);
+    const SceneSpace of_file = file.space();
+    scene.space.up = of_file.up;
+    scene.set_unit(of_file.unit, content.unit);
     scene.warnings = import_warnings(file);
     scene.elements = elements_of(file);
     scene.not_read = left_out_of(file);

@@ -55,7 +55,4 @@ ElementCounts elements_of(const MeshFile& file);
 /// Returns the content that was not read, for LoadedScene::not_read.
 std::vector<std::string> left_out_of(const MeshFile& file);
 
-/// Returns the axes and the unit of a file: those of its format. An FBX file states its own.
-SceneSpace space_of(const MeshFile& file);
-
 }  // namespace octopair::io

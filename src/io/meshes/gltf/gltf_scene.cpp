@@ -221,7 +221,7 @@ bool is_for_assimp(const GltfFile& file) {
 
 /// Returns the objects of a model. Moves its meshes and names; the labels stay in its tree.
 PlacedMeshes placed_meshes(GltfModel& model) {
-    PlacedMeshes placed{"node", {}, {}};
+    PlacedMeshes placed{"node", {}, {}, "m"};
     std::unordered_map<std::uint64_t, std::size_t> numbers;
     for (Instance& instance : model.instances()) {
         const auto [number, is_new] = numbers.try_emplace(instance.mesh, placed.meshes.size());
@@ -242,9 +242,9 @@ LoadedScene scene_of(GltfFile& file, const SceneContent& content) {
     std::vector<std::string> warnings = model.warnings();
     PlacedMeshes placed = placed_meshes(model);
     LoadedScene scene = scene_of(placed, content, file.budget());
-    scene.largest_rounded = largest;
+    scene.largest_rounded = UnitChange(placed.unit, content.unit)(largest);
     scene.warnings = std::move(warnings);
-    scene.space = {UpAxis::y, "m"};
+    scene.space.up = UpAxis::y;
     return scene;
 }
 

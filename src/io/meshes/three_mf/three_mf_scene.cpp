@@ -221,10 +221,11 @@ std::vector<std::string> warnings_of(const Model& model, const Build& build) {
 LoadedScene scene_of_package(Package& package, const SceneContent& content) {
     Model model(package, content.progress);
     Build build = three_mf::make_build(model);
+    build.placed.unit = short_unit(model.start().unit);
     LoadedScene scene = scene_of(build.placed, content, package.budget());
     scene.warnings = warnings_of(model, build);
     scene.not_read = std::move(build.not_read);
-    scene.space = {UpAxis::z, short_unit(model.start().unit)};
+    scene.space.up = UpAxis::z;
     return scene;
 }
 

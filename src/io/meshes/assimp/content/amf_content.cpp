@@ -1,9 +1,12 @@
 // Checks AMF files, and writes them in a form that Assimp reads rightly (correct_amf()).
 #include "io/meshes/assimp/content/mesh_content.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,10 +48,25 @@ public:
         for (const XmlElement& object : root.children("object")) write_object(object);
         for (const XmlElement& constellation : root.children("constellation")) write_constellation(constellation);
         out_.close();
-        return {out_.take(), {}, left_out_.list()};
+        return {out_.take(), {}, left_out_.list(), unit_of(root)};
     }
 
 private:
+    /// Returns the unit of the file, empty if AMF does not know it. The default is millimetres.
+    static std::string unit_of(const XmlElement& root) {
+        const std::string_view unit = root.attribute("unit").value_or("millimeter");
+        constexpr std::array<std::pair<std::string_view, const char*>, 7> units = {{{"millimeter", "mm"},
+                                                                                    {"inch", "in"},
+                                                                                    {"feet", "ft"},
+                                                                                    {"foot", "ft"},
+                                                                                    {"meter", "m"},
+                                                                                    {"micron", "µm"},
+                                                                                    {"micrometer", "µm"}}};
+        const auto* const known =
+            std::find_if(units.begin(), units.end(), [&](const auto& any) { return any.first == unit; });
+        return known == units.end() ? "" : known->second;
+    }
+
     /// Assimp joins objects by their ids. So if a file has several objects, each needs an id that no other object has.
     void check_id(const XmlElement& element) {
         const auto id = element.attribute("id");

@@ -22,6 +22,8 @@ struct MeshContent {
     std::string ending;
     /// Content that Assimp leaves out, for example "entities of type 3DSOLID (2)".
     std::vector<std::string> left_out;
+    /// Unit of length that the file states, empty for one that octopair does not know; nothing: the unit is that of the format.
+    std::optional<std::string> unit = {};
 };
 
 /// Counts the parts of a file that are left out, by their kind.

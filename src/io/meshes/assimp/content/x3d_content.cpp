@@ -14,6 +14,7 @@
 #include "base/memory.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats/unit_change.hpp"
 #include "io/meshes/assimp/content/xml_geometry.hpp"
 #include "io/meshes/text_words.hpp"
 #include "io/meshes/xml/xml_tree.hpp"
@@ -67,14 +68,18 @@ public:
         refuse(tree_.path(), "has no element <X3D>, which X3D files have");
     }
 
+    /// Returns the unit of lengths, empty for one that is not known; nothing if the file states none.
+    const std::optional<std::string>& unit() const { return unit_; }
+
 private:
-    /// Reads the unit of angles. Assimp ignores this unit and reads angles as radians.
+    /// Reads the units of angles and lengths. Assimp ignores them, and reads angles as radians.
     void check_units(const XmlElement& head) {
         for (const XmlElement& unit : head.children("unit")) {
             const std::vector<double> factor = x3d_numbers(unit, "conversionFactor");
             if (factor.size() != 1 || !(factor[0] > 0)) unit.refuse("conversionFactor is no number above 0");
             const std::string_view category = unit.attribute("category").value_or("");
             if (category == "angle") radians_ = factor[0];
+            if (category == "length") unit_ = unit_of_metres(factor[0]);
             if (category == "length" && factor[0] != 1)
                 left_out_.add("the unit of lengths, which are read as they are");
         }
@@ -227,6 +232,7 @@ private:
     XmlWriter& out_;
     LeftOut& left_out_;
     double radians_ = 1;  // radians in the file's unit of angles
+    std::optional<std::string> unit_;
     std::map<std::string, std::vector<std::size_t>> definitions_;
     std::vector<std::size_t> open_;  // nodes that are being written
     std::size_t files_ = 0;          // number of levels of Inline nodes that this file may still have
@@ -240,10 +246,11 @@ MeshContent correct_x3d(const std::string& path, std::string_view bytes) {
     LeftOut left_out;
     out.open("X3D");
     out.open("Scene");
-    X3dWriter(tree, out, left_out).write_scene(16);
+    X3dWriter writer(tree, out, left_out);
+    writer.write_scene(16);
     out.close();
     out.close();
-    return {out.take(), {}, left_out.list()};
+    return {out.take(), {}, left_out.list(), writer.unit()};
 }
 
 }  // namespace octopair::io
