@@ -150,7 +150,8 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     adjacent, max_contacts, tolerance, duplicate_tolerance, min_depth, weld
         Options of the exact stages: :meth:`Pipeline.triangles`, :meth:`Pipeline.exact_features`, :meth:`Geometry.mesh`.
     exclude, same_parent
-        File with rules on names; whether pairs of objects with the same parent are left out.
+        File with rules on names and relations, or relations of IFC elements such as ``"fills,assembly"``; whether pairs of objects with
+        the same parent are left out.
     baseline, report, up, unit
         File with an older result; page about the collisions, its upward axis, and its unit.
     events : bool

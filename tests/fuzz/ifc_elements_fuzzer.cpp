@@ -17,6 +17,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     }
     require(all <= 2 * size && read.largest_coordinate >= 0);
     for (const auto& [id, material] : read.materials) require(id.size() == 22 && !material.empty());
+    std::size_t links = 0;
+    for (const auto& of_relation : read.links) {
+        for (const auto& [from, to] : of_relation) require(from.size() == 22 && to.size() == 22), ++links;
+    }
+    require(links <= size);
     require(io::decode_step_text(text).size() <= 2 * size);
     if (const auto element = io::parse_ifc_element(text)) {
         require(element->type.size() + element->name.size() + element->id.size() <= size);

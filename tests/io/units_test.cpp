@@ -5,6 +5,7 @@
 
 #include "io/formats/unit_change.hpp"
 #include "io/ifc_model.hpp"
+#include "io/meshes/bounded_pose.hpp"
 #include "io/scene_reader.hpp"
 #include "io/three_mf_reading.hpp"
 

@@ -58,7 +58,7 @@ AnyRule rule(const json& value, const std::string& place) {
     fields.allow({"a", "b", "relation"});
     if (fields.find("relation") == nullptr) return ColumnRule{patterns(fields, "a"), patterns(fields, "b")};
     fields.allow({"relation"});
-    const std::string word = fields.text("relation");
+    const std::string& word = fields.text("relation");
     const auto relation = relation_of(word);
     if (!relation) {
         refuse(fields.place_of("relation"), fmt::format("unknown relation '{}'; known relations: {}", shown_text(word),
