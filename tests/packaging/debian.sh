@@ -47,7 +47,7 @@ in_root apt-get update -qq
 
 echo "1. octopair alone"
 begin=$(date +%s.%N)
-install /debs/octopair_*.deb /debs/liboctopair1_*.deb /debs/liboctopair-processes1_*.deb
+install /debs/octopair_*.deb /debs/liboctopair2_*.deb /debs/liboctopair-processes2_*.deb
 in_root sh /debs/tests/program
 awk -v from="$begin" -v to="$(date +%s.%N)" 'BEGIN { printf "from apt install to pairs: %.1f s\n", to - from }'
 in_root sh -c 'test -f /usr/share/man/man1/octopair.1.gz && test -f /usr/share/bash-completion/completions/octopair'
