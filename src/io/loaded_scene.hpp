@@ -93,6 +93,8 @@ struct LoadedScene {
     ObjectRelations relations;       ///< empty, or an element per object; empty for triangles
     SceneSpace space;                ///< axes and unit of the coordinates
     std::string converted_from;      ///< unit that the file states, if its coordinates were converted to another
+    std::string project;             ///< id of the project, as an IFC file has it; empty if the format has none
+    std::string root;  ///< first part of the names, if the reader took it from the name of the file; or empty
     /// Warnings of the readers, for example that a part of a file was not read. Each is one line "FILE: ...".
     std::vector<std::string> warnings;
     std::vector<std::string>

@@ -19,6 +19,7 @@ struct Part {
     bool is_model = false;            ///< false: a file of boxes
     std::string unit = {};            ///< unit that the file states; empty if unknown
     std::string converted_from = {};  ///< this unit, if the coordinates were converted to that of the set
+    std::string project = {}, root = {};  ///< LoadedScene::project, LoadedScene::root
 };
 
 class ShapedSet;

@@ -8,6 +8,7 @@
 #include "cli/detect/pipeline_options.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/formats/format_choice.hpp"
+#include "io/results/collision_key.hpp"
 #include "io/results/collision_writer.hpp"
 #include "io/results/pair_writer.hpp"
 
@@ -28,11 +29,62 @@ private:
     std::unique_ptr<io::PairWriter> writer_;
 };
 
+/// Names, details, files and keys of the objects of a result. Borrows the sets.
+class ResultNames {
+public:
+    ResultNames(const FoundIn& sets, bool join) : first_(sets.first) {
+        io::KeyMaker keys;
+        first_.add_keys(keys);
+        if (!join) return;
+        second_.emplace(sets.second);
+        second_->add_keys(keys);
+    }
+    ResultNames(const ResultNames&) = delete;
+    ResultNames& operator=(const ResultNames&) = delete;
+
+    io::CollisionNames names() const { return {first_.names, second_ ? second_->names : first_.names}; }
+    std::size_t files() const { return first_.names.sources.size() + (second_ ? second_->names.sources.size() : 0); }
+
+private:
+    struct Set {
+        explicit Set(const InputSet& set) {
+            const auto& triangles = set.scene.triangles;
+            if (triangles) {
+                names = {triangles->owner_names, triangles->owners, &triangles->owner_details};
+            } else {
+                names = {set.scene.names, {}, &set.scene.details};
+            }
+            std::uint64_t end = 0;
+            for (const Part& part : set.parts) {
+                end += part.objects;
+                sources.push_back({part.path, end_of(end), part.project, part.root});
+            }
+            names.sources = sources;
+        }
+        void add_keys(io::KeyMaker& maker) {
+            keys = maker.keys_of(names);
+            names.keys = keys;
+        }
+        /// Returns the end of the numbers of named objects, for the end of the numbers of objects.
+        std::uint32_t end_of(std::uint64_t objects) const {
+            if (names.owners.empty()) return std::uint32_t(objects);
+            return objects == 0 ? 0 : names.owners[std::size_t(objects) - 1] + 1;
+        }
+
+        std::vector<io::ObjectSource> sources;
+        std::vector<std::string> keys;
+        io::ObjectNames names;
+    };
+
+    Set first_;
+    std::optional<Set> second_;
+};
+
 /// Writes collisions to several outputs at once. Collisions exist only for sets with shapes, which have no frames.
 class Collisions final : public FoundWriter {
 public:
-    Collisions(const io::CollisionNames& names, std::optional<io::Baseline> baseline)
-        : names_(names), baseline_(std::move(baseline)) {}
+    Collisions(std::unique_ptr<ResultNames> names, std::optional<io::Baseline> baseline)
+        : names_(std::move(names)), baseline_(std::move(baseline)) {}
 
     void add(std::unique_ptr<io::CollisionWriter> writer) { writers_.push_back(std::move(writer)); }
     /// Adds an .npy file, which gets only the pairs of the collisions.
@@ -43,7 +95,7 @@ public:
     }
     void write(std::span<const Pair> pairs, std::span<const Finding> findings) override {
         std::vector<io::Change> changes;
-        if (baseline_) changes = baseline_->compare(pairs, findings, names_);
+        if (baseline_) changes = baseline_->compare(pairs, findings, names_->names());
         for (const auto& writer : writers_) writer->write({pairs, findings, changes});
         if (pairs_) pairs_->write(pairs);
     }
@@ -63,17 +115,11 @@ public:
     }
 
 private:
-    io::CollisionNames names_;
+    std::unique_ptr<ResultNames> names_;  // borrowed by the writers
     std::optional<io::Baseline> baseline_;
     std::vector<std::unique_ptr<io::CollisionWriter>> writers_;
     std::unique_ptr<io::PairWriter> pairs_;
 };
-
-io::ObjectNames names_of(const InputSet& set) {
-    if (const auto& triangles = set.scene.triangles)
-        return {triangles->owner_names, triangles->owners, &triangles->owner_details};
-    return {set.scene.names, {}, &set.scene.details};
-}
 
 std::unique_ptr<io::PairWriter> make_pairs(const DetectRequest& request, const FoundIn& sets,
                                            const std::stop_token& stop) {
@@ -91,14 +137,16 @@ std::unique_ptr<io::CollisionWriter> make_rows(const DetectRequest& request, con
 std::unique_ptr<FoundWriter> make_collisions(const DetectRequest& request, const FoundIn& sets,
                                              const std::stop_token& stop) {
     const PipelineRequest& asked = request.pipeline;
+    auto names = std::make_unique<ResultNames>(sets, !request.against.empty());
     io::CollisionForm form;
-    form.names = {names_of(sets.first), names_of(sets.second)};
+    form.names = names->names();
+    form.files = names->files() > 1;
     form.features = stage_of(request) == Stage::features;
     form.times = sets.first.moves_meanwhile || sets.second.moves_meanwhile;
     form.changes = !asked.baseline.empty();
     std::optional<io::Baseline> baseline;
     if (form.changes) baseline.emplace(asked.baseline, !request.against.empty(), stop);
-    auto collisions = std::make_unique<Collisions>(form.names, std::move(baseline));
+    auto collisions = std::make_unique<Collisions>(std::move(names), std::move(baseline));
     if (io::is_array_file(request.output)) {
         collisions->add(make_pairs(request, sets, stop));
     } else {

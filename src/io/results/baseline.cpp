@@ -13,6 +13,7 @@
 #include "io/json/json_fields.hpp"
 #include "io/json/json_text.hpp"
 #include "io/results/collision_columns.hpp"
+#include "io/results/collision_key.hpp"
 
 namespace octopair::io {
 
@@ -45,11 +46,15 @@ std::string_view matching_states(CollisionClass collision_class) {
     return meet(collision_class) ? "+?" : "-?";
 }
 
-std::string key_of_ids(const ObjectId& a, const ObjectId& b, bool join) {
+/// Returns the key of a collision for a comparison by names.
+std::string key_of_names(const ObjectId& a, const ObjectId& b, bool join) {
     std::string first = a.text(join ? "a" : ""), second = b.text(join ? "b" : "");
     if (second < first) std::swap(first, second);
     return fmt::format("{}{}:{}{}", state_unknown, first.size(), first, second);
 }
+
+/// Returns a key with room for the state. No key of names has the second character.
+std::string with_state(const std::string& key) { return fmt::format("{}={}", state_unknown, key); }
 
 ObjectId id_of(const RecordedObject& object) { return {object.number, std::string(object.name), object.triangle}; }
 
@@ -90,7 +95,9 @@ void Baseline::read(std::string_view text, std::string_view file, const std::sto
         const CollisionRecord collision = read_collision(row);
         // The file may be the result of an earlier comparison. Its "gone" rows are not part of that result.
         if (collision.change == Change::gone) continue;
-        std::string key = key_of_ids(id_of(collision.a), id_of(collision.b), join_);
+        by_name_ |= collision.key.empty();
+        std::string key = collision.key.empty() ? key_of_names(id_of(collision.a), id_of(collision.b), join_)
+                                                : with_state(collision.key);
         key[0] = contact_state(collision);
         unmatched_[key].push_back(lines_.size());
         lines_.emplace_back(line);
@@ -98,10 +105,6 @@ void Baseline::read(std::string_view text, std::string_view file, const std::sto
     matched_.resize(lines_.size());
     counts_.gone = lines_.size();
     for (auto& [key, rows] : unmatched_) std::reverse(rows.begin(), rows.end());
-}
-
-std::string Baseline::key_of(Pair pair, const CollisionNames& names) const {
-    return key_of_ids(id_of(pair.a, names.a), id_of(pair.b, names.b), join_);
 }
 
 bool Baseline::match(std::string key, CollisionClass collision_class) {
@@ -121,7 +124,11 @@ std::vector<Change> Baseline::compare(std::span<const Pair> pairs, std::span<con
     std::vector<Change> changes(pairs.size(), Change::begun);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const CollisionClass now = findings.empty() ? CollisionClass::unknown : findings[i].collision_class;
-        if (match(key_of(pairs[i], names), now)) changes[i] = Change::same;
+        const Pair pair = pairs[i];
+        const bool known =
+            match(with_state(collision_key(pair, names)), now) ||
+            (by_name_ && match(key_of_names(id_of(pair.a, names.a), id_of(pair.b, names.b), join_), now));
+        if (known) changes[i] = Change::same;
     }
     const auto same = std::uint64_t(std::count(changes.begin(), changes.end(), Change::same));
     counts_.same += same;

@@ -1,7 +1,8 @@
 // Baseline: compares a new result with an older one, and says which collisions are new, the same, or gone.
 //
-// - The key of a collision is the unordered pair of its objects' names. A triangle adds its number within its owner.
-// - An object without a name is identified by its number, in a join also by its set.
+// - Rows with the same key (collision_key.hpp) are the same collision.
+// - A row of the older result without a key is of octopair 0.2 or of another program. It is matched by the names of its two objects, in any
+//   order. A triangle adds its number within its owner. The number of an object stands for a missing name, in a join with the set.
 // - Collisions with the same key are matched in order: the first old row with the first new row, and so on.
 // - A pair that was apart (class "clearance") and is now in contact counts as new, and the other way round.
 // - A row without a class matches rows of any class.
@@ -44,11 +45,11 @@ public:
 private:
     explicit Baseline(bool join) : join_(join) {}
     void read(std::string_view text, std::string_view file, const std::stop_token& stop);
-    std::string key_of(Pair pair, const CollisionNames& names) const;
     /// Matches a new collision with the first unmatched old collision that has the key. Returns whether there was such a collision.
     bool match(std::string key, CollisionClass collision_class);
 
     bool join_;
+    bool by_name_ = false;  // true if a line has no key
     std::vector<std::string> lines_;
     std::vector<bool> matched_;  // for each line: true if a new collision matched it
     /// Unmatched lines by key, the last line first. The first character of a key is the contact state (baseline.cpp).

@@ -1,11 +1,14 @@
 #include "io/results/collision_columns.hpp"
 
+#include "io/results/collision_key.hpp"
+
 namespace octopair::io {
 
 namespace {
 
-RecordedObject recorded(std::uint32_t object, const ObjectNames& names) {
+RecordedObject recorded(std::uint32_t object, const ObjectNames& names, bool files) {
     RecordedObject recorded{object, names.of(object)};
+    if (files) recorded.file = names.source(object).path;
     for (const Detail detail : all_details) recorded.details[std::size_t(detail)] = names.detail(object, detail);
     if (!names.owners.empty()) recorded.triangle = names.triangle(object);
     return recorded;
@@ -42,7 +45,8 @@ void add_finding(CollisionRecord& row, const Finding& finding, const CollisionFo
 
 CollisionRecord record_of(const CollisionRows& rows, std::size_t i, const CollisionForm& form) {
     const Pair pair = rows.pairs[i];
-    CollisionRecord row{recorded(pair.a, form.names.a), recorded(pair.b, form.names.b)};
+    CollisionRecord row{recorded(pair.a, form.names.a, form.files), recorded(pair.b, form.names.b, form.files)};
+    row.key = collision_key(pair, form.names);
     if (!rows.changes.empty()) row.change = rows.changes[i];
     if (!rows.findings.empty()) add_finding(row, rows.findings[i], form);
     return row;

@@ -27,6 +27,7 @@ namespace octopair::io {
 struct RecordedObject {
     std::uint32_t number = 0;
     std::string_view name = {};                                     ///< empty if it has none
+    std::string_view file = {};                                     ///< empty if the result has one input file
     std::array<std::string_view, all_details.size()> details = {};  ///< empty where unknown
     std::optional<std::uint32_t> triangle = {};                     ///< number within its owner
     bool open = false;
@@ -37,6 +38,7 @@ using NearestPoints = std::array<Point3d, 2>;
 /// Content of a row. A value that the result does not know is empty.
 struct CollisionRecord {
     RecordedObject a, b;
+    std::string key = {};  ///< collision_key(); empty if it is unknown
     std::optional<Change> change = {};
     std::optional<CollisionClass> collision_class = {};
     std::optional<double> time = {}, distance = {};
@@ -57,20 +59,23 @@ Finding finding_of(const CollisionRecord& row);
 
 /// Names of the columns of one object.
 struct ObjectColumns {
-    std::string_view number, name;
+    std::string_view number, name, file;
     std::array<std::string_view, all_details.size()> details;
     std::string_view triangle, open;
 };
 inline constexpr ObjectColumns columns_of_a = {
-    "a", "a_name", {"a_label", "a_type", "a_id", "a_parent", "a_level", "a_material"}, "a_triangle", "a_open"};
+    "a",          "a_name", "a_file", {"a_label", "a_type", "a_id", "a_parent", "a_level", "a_material"},
+    "a_triangle", "a_open"};
 inline constexpr ObjectColumns columns_of_b = {
-    "b", "b_name", {"b_label", "b_type", "b_id", "b_parent", "b_level", "b_material"}, "b_triangle", "b_open"};
+    "b",          "b_name", "b_file", {"b_label", "b_type", "b_id", "b_parent", "b_level", "b_material"},
+    "b_triangle", "b_open"};
 
 /// Calls visit(name, value) for each column of .jsonl, in their order. `Row` is CollisionRecord, or const.
 template <typename Row, typename Visit>
 void for_each_json_column(Row& row, const Visit& visit) {
     const auto visit_object = [&](const ObjectColumns& columns, auto& object) {
         visit(columns.name, object.name);
+        visit(columns.file, object.file);
         for (std::size_t i = 0; i < all_details.size(); ++i) visit(columns.details[i], object.details[i]);
         visit(columns.triangle, object.triangle);
     };
@@ -78,6 +83,7 @@ void for_each_json_column(Row& row, const Visit& visit) {
     visit(columns_of_b.number, row.b.number);
     visit_object(columns_of_a, row.a);
     visit_object(columns_of_b, row.b);
+    visit("key", row.key);
     visit("change", row.change);
     visit("class", row.collision_class);
     visit("time", row.time);
@@ -132,6 +138,9 @@ void for_each_csv_column(Row& row, const Visit& visit) {
         visit(columns_of_a.details[i], row.a.details[i]);
         visit(columns_of_b.details[i], row.b.details[i]);
     }
+    visit(columns_of_a.file, row.a.file);
+    visit(columns_of_b.file, row.b.file);
+    visit("key", row.key);
     visit("change", row.change);
 }
 

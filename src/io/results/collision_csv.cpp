@@ -93,6 +93,7 @@ void read_csv(const CsvPlace& field, std::uint32_t& value) {
     value = csv_number<std::uint32_t>(field, "a whole number");
 }
 void read_csv(const CsvPlace& field, std::string_view& value) { value = field.text; }
+void read_csv(const CsvPlace& field, std::string& value) { value = field.text; }
 void read_csv(const CsvPlace& field, bool& value) { value = field.text == "true"; }
 void read_csv(const CsvPlace& field, std::optional<double>& value) {
     value = csv_number<double>(field, "a finite number");

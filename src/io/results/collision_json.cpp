@@ -64,6 +64,7 @@ struct JsonPlace {
 void read_json(const JsonPlace& from, std::uint32_t& value) { value = from.row.whole_number(from.key); }
 void read_json(const JsonPlace& from, std::optional<std::uint32_t>& value) { value = from.row.whole_number(from.key); }
 void read_json(const JsonPlace& from, std::string_view& value) { value = from.row.text(from.key); }
+void read_json(const JsonPlace& from, std::string& value) { value = from.row.text(from.key); }
 void read_json(const JsonPlace& from, bool& value) { value = from.row.boolean(from.key); }
 void read_json(const JsonPlace& from, std::optional<double>& value) { value = from.row.number(from.key); }
 template <typename Word>

@@ -13,11 +13,22 @@
 
 namespace octopair::io {
 
+/// An input file of a set. Borrowed.
+struct ObjectSource {
+    std::string_view path;
+    std::uint32_t end;              ///< 1 more than the number of its last object; for triangles, of its last owner
+    std::string_view project = {};  ///< LoadedScene::project
+    std::string_view root = {};     ///< LoadedScene::root
+};
+
 /// Names of the objects of one set. Borrowed.
 struct ObjectNames {
     std::span<const std::string> names = {};     ///< empty, or one name per object; for triangles, one per owner
     std::span<const std::uint32_t> owners = {};  ///< for triangles, the owner of each, ascending; otherwise empty
     const ObjectDetails* details = nullptr;      ///< null, empty, or a row per name
+    std::span<const ObjectSource> sources = {};  ///< the input files, in the order of their objects; or empty
+    std::span<const std::string> keys =
+        {};  ///< empty, or one key per object; for triangles, one per owner (collision_key.hpp)
 
     /// Returns the name of an object; empty if it has none.
     std::string_view of(std::uint32_t object) const {
@@ -27,6 +38,12 @@ struct ObjectNames {
     /// Returns a detail of an object, or of the owner of a triangle; empty if it is unknown.
     std::string_view detail(std::uint32_t object, Detail what) const {
         return details == nullptr ? std::string_view() : details->of(owners.empty() ? object : owners[object], what);
+    }
+    /// Returns the input file of an object. Requires: `sources` is not empty.
+    const ObjectSource& source(std::uint32_t object) const {
+        const std::size_t i = owners.empty() ? object : owners[object];
+        return *std::upper_bound(sources.begin(), sources.end(), i,
+                                 [](std::size_t n, const ObjectSource& source) { return n < source.end; });
     }
     bool has(Detail what) const { return details != nullptr && details->has(what); }
     /// Returns the number of a triangle among those of its owner. Requires: `owners` is not empty.
@@ -48,6 +65,7 @@ struct CollisionForm {
     bool features = false;  ///< depth and contacts are known
     bool times = false;     ///< the time of first contact is known
     bool changes = false;   ///< the result is compared with a baseline
+    bool files = false;     ///< the objects are of several input files
 };
 
 /// Consecutive rows of a result. Borrowed.

@@ -68,9 +68,12 @@ public:
     void finish() override { out_->commit(); }
 
 private:
-    /// Returns whether the file has a column. Details that no object has, and changes without a baseline, get no column.
+    /// Returns whether the file has a column. Details that no object has, files of a result with one input, keys, and changes without a
+    /// baseline get no column.
     bool is_shown(std::string_view name) const {
         if (name == "change") return form_.changes;
+        if (name == "key") return false;
+        if (name == columns_of_a.file || name == columns_of_b.file) return form_.files;
         for (const Detail detail : all_details) {
             const std::size_t i = std::size_t(detail);
             if (name == columns_of_a.details[i] || name == columns_of_b.details[i]) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "io/meshes/assimp/mesh_file.hpp"
@@ -99,6 +100,9 @@ LoadedScene read_mesh_scene(const std::string& path, const SceneContent& content
         scene.relations = relations_of(file);
         if (content.shapes) scene.shapes = shapes_of(file);
     }
+    scene.project = file.ifc_text().project;
+    const std::string file_name = std::filesystem::path(path).filename().string();
+    if (file.scene().mRootNode->mName.C_Str() == file_name) scene.root = file_name;
     scene.largest_rounded = file.largest_rounded();
     const SceneSpace of_file = file.space();
     scene.space.up = of_file.up;

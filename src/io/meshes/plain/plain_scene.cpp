@@ -193,6 +193,7 @@ bool is_plain_ending(std::string_view ending) {
 
 LoadedScene read_plain_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
     LoadedScene scene;
+    scene.root = std::filesystem::path(path).filename().string();
     std::vector<PlainMesh> meshes = read_meshes(path, stop, content.progress, scene);
     if (content.objects == MeshObjects::node) {
         add_objects(meshes, path, scene, stop);

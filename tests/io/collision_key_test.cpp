@@ -1,0 +1,50 @@
+// Tests keys of objects and collisions.
+#include "io/results/collision_key.hpp"
+
+#include <gtest/gtest.h>
+
+namespace octopair::test {
+namespace {
+
+using Keys = std::vector<std::string>;
+
+TEST(CollisionKeys, AreIdsOrPathsInTheFile) {
+    const std::vector<std::string> names = {"m.ifc/wall", "m.ifc/site", "t.obj/left", "t.obj", "t.objects", "", "left"};
+    io::ObjectDetails details;
+    io::DetailsBuilder builder(details);
+    builder.add({"", "", "W1", "", "", ""});
+    builder.add({});
+    const io::ObjectSource sources[] = {{"d/m.ifc", 2, "P", ""}, {"d/t.obj", 6, "", "t.obj"}, {"u.glb", 7}};
+    io::KeyMaker maker;
+    EXPECT_EQ(maker.keys_of({names, {}, &details, sources}),
+              (Keys{"P/W1", "1:m.ifc/site", "2:left", "2:", "2:t.objects", "2:#3", "3:left"}));
+    const io::ObjectSource second[] = {{"d/m.ifc", 1, "P", ""}};
+    EXPECT_EQ(maker.keys_of({names, {}, &details, second}), Keys{"P/W1~2"}) << "the set of a join, with the same file";
+    const io::ObjectSource no_project[] = {{"d/m.ifc", 1}};
+    EXPECT_EQ(io::KeyMaker().keys_of({names, {}, &details, no_project}), Keys{"1/W1"});
+}
+
+TEST(CollisionKeys, EqualPathsAreNumbered) {
+    const std::vector<std::string> names = {"bolt", "bolt", "bolt~2", "bolt", "bolt~2"};
+    const io::ObjectSource sources[] = {{"a.glb", 5}};
+    EXPECT_EQ(io::KeyMaker().keys_of({names, {}, nullptr, sources}),
+              (Keys{"1:bolt", "1:bolt~2", "1:bolt~2~2", "1:bolt~3", "1:bolt~2~3"}));
+    const std::vector<std::string> many(100'000, "bolt");
+    const io::ObjectSource long_source[] = {{"a.glb", 100'000}};
+    EXPECT_EQ(io::KeyMaker().keys_of({many, {}, nullptr, long_source}).back(), "1:bolt~100000");
+}
+
+TEST(CollisionKeys, OfCollisionsHaveTheLesserFirst) {
+    const std::vector<std::string> keys = {"2:b", "1:a | 1:c", "1:a"};
+    const io::ObjectNames set{.keys = keys};
+    EXPECT_EQ(io::collision_key({0, 2}, {set, set}), "1:a | 2:b");
+    EXPECT_EQ(io::collision_key({2, 0}, {set, set}), "1:a | 2:b");
+    EXPECT_EQ(io::collision_key({1, 0}, {set, set}), R"(1:a \| 1:c | 2:b)");
+    EXPECT_EQ(io::collision_key({0, 1}, {}), "");
+    const std::vector<std::uint32_t> owners = {0, 0, 2};
+    const io::ObjectNames triangles{.owners = owners, .keys = keys};
+    EXPECT_EQ(io::collision_key({1, 2}, {triangles, triangles}), "1:a#0 | 2:b#1");
+}
+
+}  // namespace
+}  // namespace octopair::test
