@@ -122,7 +122,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
            objects: Optional[Literal["node", "triangle"]] = None, margin: Optional[float] = None, padding: Optional[PathLike] = None,
            adjacent: Optional[Literal["beyond_shared", "beyond-shared", "exclude", "include"]] = None,
            max_contacts: Optional[int] = None, tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None,
-           min_depth: Optional[float] = None, weld: Optional[float] = None, exclude: Optional[PathLike] = None,
+           min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None, exclude: Optional[PathLike] = None,
            same_parent: Optional[Literal["include", "exclude"]] = None, baseline: Optional[PathLike] = None,
            report: Optional[PathLike] = None, up: Optional[Literal["y", "z"]] = None, unit: Optional[str] = None, events: bool = False,
            index_type: Optional[Literal["uint32", "uint64"]] = None, order: Optional[Order] = None, limit: Optional[int] = None,
@@ -147,7 +147,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
         What counts as one object of a mesh file.
     margin, padding
         Largest gap at which a pair counts; file with the clearance of each object.
-    adjacent, max_contacts, tolerance, duplicate_tolerance, min_depth, weld
+    adjacent, max_contacts, tolerance, duplicate_tolerance, min_depth, classes, weld
         Options of the exact stages: :meth:`Pipeline.triangles`, :meth:`Pipeline.exact_features`, :meth:`Geometry.mesh`.
     exclude, same_parent
         File with rules on names and relations, or relations of IFC elements such as ``"fills,assembly"``; whether pairs of objects with

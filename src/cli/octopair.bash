@@ -62,6 +62,7 @@ _octopair_values() {
     case $2:$3 in
         --stage:*) words="pairs objects features" ;;
         --adjacent:*) words="beyond-shared exclude include" ;;
+        --classes:*) words="clearance collision touching penetrating contained duplicate" ;;
         --up:*) words="y z" ;;
         --unit:*) words="mm cm dm m km in ft" ;;
         --same-parent:*) words="include exclude" ;;

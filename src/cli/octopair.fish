@@ -58,6 +58,8 @@ function __octopair_values
             printf '%s\n' pairs objects features
         case '--adjacent:*'
             printf '%s\n' beyond-shared exclude include
+        case '--classes:*'
+            printf '%s\n' clearance collision touching penetrating contained duplicate
         case '--up:*'
             printf '%s\n' y z
         case '--unit:*'

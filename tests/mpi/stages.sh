@@ -97,6 +97,7 @@ for ranks in 1 2; do same_results $ranks found.jsonl shapes.json --stage feature
 same_results 3 found.csv shapes.json --stage objects --order octal --padding padding.npy
 same_results 2 found.npy shapes.json others.json --stage objects
 same_results 3 found.jsonl shapes.json --against others.json --stage features --max-contacts 2 --exclude rules.json
+same_results 3 found.jsonl shapes.json --stage features --margin 0.02 --classes clearance,touching,contained --min-depth 0.01 --tolerance 0.05
 same_results 2 found.csv moving.json --stage objects --same-parent exclude
 same_results 3 pairs.csv shapes.json --stage pairs
 same_results 2 pairs.npy shapes.json --stage pairs --exclude rules.json

@@ -13,6 +13,7 @@
 
 #include "cli/detect/pipeline_options.hpp"
 #include "cli/detect/relation_filter.hpp"
+#include "cli/detect/row_filters.hpp"
 #include "cli/input/shaped_set.hpp"
 #include "io/files/failure.hpp"
 #include "io/json/exclusion_rules.hpp"
@@ -227,6 +228,8 @@ public:
         return excluded;
     }
 
+    const LeftOut& left_out() const override { return left_out_; }
+
 private:
     Input input_of(std::uint64_t frame) const {
         return {sets_.first.frame(frame),
@@ -243,12 +246,28 @@ private:
         pipeline_.add(make_sphere_filter(first, request.margin, other));
         pipeline_.add(make_oriented_box_filter(first, request.margin, other));
         pipeline_.add(make_exact_object_filter(first, options, other));
-        if (stage_of(request) == Stage::features) pipeline_.add(make_exact_feature_filter(first, options, other));
-        add_min_depth(request);
+        if (stage_of(request) == Stage::features) {
+            if (request.pipeline.min_depth) add_early_depth(first, options, other, *request.pipeline.min_depth);
+            pipeline_.add(make_exact_feature_filter(first, options, other));
+        }
+        add_row_filters(request);
     }
 
-    void add_min_depth(const DetectRequest& request) {
-        if (request.pipeline.min_depth) pipeline_.add(make_depth_filter(*request.pipeline.min_depth));
+    /// Adds a filter that applies --min-depth to the findings that the default tolerance gives, unless `options` have this tolerance.
+    // NOLINTNEXTLINE(readability-function-size): the first three parameters are those of every exact filter.
+    void add_early_depth(const ShapedObjects& first, const ExactOptions& options, const ShapedObjects* other,
+                         double min_depth) {
+        ExactOptions standard{.margin = options.margin, .tolerance = default_tolerance_of(sets_)};
+        standard.max_contacts = 0;
+        const double duplicate_tolerance = options.duplicate_tolerance.value_or(options.tolerance);
+        if (options.tolerance == standard.tolerance && duplicate_tolerance == standard.tolerance) return;
+        pipeline_.add(make_early_depth_filter(make_exact_feature_filter(first, standard, other), min_depth));
+    }
+
+    void add_row_filters(const DetectRequest& request) {
+        const PipelineRequest& asked = request.pipeline;
+        if (asked.min_depth) pipeline_.add(make_depth_filter(*asked.min_depth));
+        if (asked.classes) pipeline_.add(make_class_filter(*asked.classes, request.verify ? &left_out_ : nullptr));
     }
 
     void add_triangles(const DetectRequest& request) {
@@ -259,7 +278,7 @@ private:
         const TriangleSet first = triangles(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(triangles(*sets_.second)) : std::nullopt;
         pipeline_.add(make_triangle_filter(first, options, second ? &*second : nullptr));
-        add_min_depth(request);
+        add_row_filters(request);
     }
 
     static ShapedObjects shaped(const InputSet& set) { return set.shaped->objects(set.padding); }
@@ -274,6 +293,7 @@ private:
     Pipeline exclusions_;  // the exclusion rules alone, with --verify
     bool has_exclusions_ = false;
     std::vector<std::string> warnings_;
+    LeftOut left_out_;  // by --classes, with --verify
 };
 
 }  // namespace

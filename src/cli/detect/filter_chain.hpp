@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/detect/detection.hpp"
+#include "cli/detect/row_filters.hpp"
 #include "cli/input/input_set.hpp"
 #include "octopair/pipeline.hpp"
 
@@ -27,6 +28,8 @@ public:
     /// Finds the pairs of a frame that exclusion rules leave out, ascending. Requires: the request has --verify.
     /// Memory: 8 bytes per pair of boxes, if there are rules.
     virtual std::vector<Pair> excluded(Engine& engine, std::uint64_t frame) = 0;
+    /// Returns the collisions that --classes has left out. Requires: the request has --verify.
+    virtual const LeftOut& left_out() const = 0;
 };
 
 /// Makes the filters of the request. Borrows the shapes and names of the sets.

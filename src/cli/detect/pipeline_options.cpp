@@ -9,6 +9,7 @@
 #include "cli/detect/detection.hpp"
 #include "cli/input/input_set.hpp"
 #include "io/formats/format_choice.hpp"
+#include "io/results/collision_row.hpp"
 #include "octopair/error.hpp"
 
 namespace octopair::cli {
@@ -44,6 +45,21 @@ std::uint32_t parse_max_contacts(const std::string& text) {
     return std::uint32_t(number);
 }
 
+/// Returns the classes of --classes, a list with commas.
+ClassSet parse_classes(const std::string& list) {
+    std::vector<std::string_view> words;
+    for (std::size_t i = 1; i < collision_classes; ++i) words.push_back(io::word_of(CollisionClass(i)));
+    ClassSet classes;
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        const std::string word = list.substr(begin, end - begin);
+        check_value("--classes", words, word);
+        classes.set(1 + std::size_t(std::find(words.begin(), words.end(), word) - words.begin()));
+        begin = end + 1;
+    }
+    return classes;
+}
+
 std::vector<std::string> all_inputs(const DetectRequest& request) {
     std::vector<std::string> inputs = request.inputs;
     if (!request.against.empty()) inputs.push_back(request.against);
@@ -55,6 +71,14 @@ std::vector<std::string> all_inputs(const DetectRequest& request) {
 std::vector<std::string_view> stage_names() {
     return with_pipeline ? std::vector<std::string_view>{"pairs", "objects", "features"}
                          : std::vector<std::string_view>{"pairs"};
+}
+
+std::string class_list(const ClassSet& classes) {
+    std::string list;
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        if (classes[i]) list += fmt::format("{}{}", list.empty() ? "" : ",", io::word_of(CollisionClass(i)));
+    }
+    return list;
 }
 
 void add_stage_option(Command& command, PipelineRequest& request, const std::string& description) {
@@ -111,11 +135,16 @@ void add_exact_options(Command& command, PipelineRequest& request) {
         command.add_option(name, parse, what).type_name("LENGTH");
     };
     add_length("--tolerance", request.tolerance,
-               "with --stage features: objects touch if a motion of at most this length separates them");
+               "with --stage features: what a motion of at most this length separates is touching; leaves out nothing");
     add_length("--duplicate-tolerance", request.duplicate_tolerance,
                "with --stage features: farthest corners of duplicates (default: the tolerance)");
     add_length("--min-depth", request.min_depth,
-               "with --stage features: leave out collisions that are certainly less deep");
+               "with --stage features: leave out collisions that are certainly less deep, of any class");
+    command
+        .add_option(
+            "--classes", [&request](const std::string& list) { request.classes = parse_classes(list); },
+            "only clearance, collision, touching, penetrating, contained, duplicate (with commas)")
+        .type_name("LIST");
     add_length("--weld", request.weld, "close gaps in meshes: join vertices that are at most this far apart");
 }
 
@@ -150,14 +179,17 @@ Stage stage_of(const DetectRequest& request) {
     return with_pipeline && !request.events && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
 }
 
-double tolerance_of(const DetectRequest& request, const SetPair& sets) {
-    if (request.pipeline.tolerance) return *request.pipeline.tolerance;
+double default_tolerance_of(const SetPair& sets) {
     double largest = 0;
     for (const InputSet* set : {&sets.first, sets.second}) {
         if (set != nullptr) largest = std::max(largest, set->scene.largest_rounded);
     }
     constexpr double relative_step = 0x1p-23;
     return 2 * largest * relative_step;
+}
+
+double tolerance_of(const DetectRequest& request, const SetPair& sets) {
+    return request.pipeline.tolerance ? *request.pipeline.tolerance : default_tolerance_of(sets);
 }
 
 bool has_filters(const DetectRequest& request) {
@@ -178,6 +210,40 @@ std::string filter_option(const DetectRequest& request) {
             break;
     }
     return request.pipeline.exclude.empty() ? "--same-parent exclude" : "--exclude";
+}
+
+/// Returns the classes that the stage of a request gives. Requires: the stage is not Stage::pairs.
+std::vector<CollisionClass> classes_of_stage(const DetectRequest& request) {
+    const bool triangles = request.mesh_objects == io::MeshObjects::triangle;
+    std::vector<CollisionClass> classes = {CollisionClass::clearance};
+    if (stage_of(request) == Stage::objects) {
+        classes.push_back(CollisionClass::collision);
+    } else {
+        classes.insert(classes.end(), {CollisionClass::touching, CollisionClass::penetrating});
+    }
+    if (!triangles) classes.push_back(CollisionClass::contained);
+    if (!triangles && stage_of(request) == Stage::features) classes.push_back(CollisionClass::duplicate);
+    return classes;
+}
+
+/// Throws: Error{usage} for a class of --classes that the stage never gives.
+void check_classes(const DetectRequest& request) {
+    if (!request.pipeline.classes) return;
+    if (stage_of(request) == Stage::pairs) refuse("--classes: only with --stage objects or features");
+    std::vector<std::string_view> words;
+    ClassSet given;
+    for (const CollisionClass one : classes_of_stage(request)) {
+        words.push_back(io::word_of(one));
+        given.set(std::size_t(one));
+    }
+    const ClassSet never = *request.pipeline.classes & ~given;
+    for (std::size_t i = 0; i < collision_classes; ++i) {
+        if (!never[i]) continue;
+        const bool objects = stage_of(request) == Stage::objects;
+        const bool triangles = request.mesh_objects == io::MeshObjects::triangle;
+        refuse(fmt::format("--classes: --stage {}{} never gives '{}'; it gives: {}", objects ? "objects" : "features",
+                           triangles ? " of triangles" : "", io::word_of(CollisionClass(i)), fmt::join(words, ", ")));
+    }
 }
 
 /// Checks the options that need a stage, or objects of a kind.
@@ -237,6 +303,7 @@ void check_pipeline_options(const DetectRequest& request) {
     if (boxes && request.mesh_objects == io::MeshObjects::triangle)
         refuse(fmt::format("--objects triangle: {} has only boxes, no triangles", *boxes));
     check_exact_options(request);
+    check_classes(request);
     check_outcome_options(request);
     if (!has_filters(request)) return;
     const std::string asked = filter_option(request);

@@ -1,6 +1,7 @@
 // The options of `octopair detect` for filters and exact stages. Stage: the last step of the pipeline that a run takes.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "io/formats/format_choice.hpp"
 #include "octopair/filters.hpp"
+#include "octopair/pipeline.hpp"
 
 namespace octopair::cli {
 
@@ -18,6 +20,9 @@ struct SetPair;
 
 enum class Stage : std::uint8_t { pairs, objects, features };
 
+/// Classes of collisions, by CollisionClass.
+using ClassSet = std::bitset<collision_classes>;
+
 /// Options of the pipeline. A member without a value means the default.
 struct PipelineRequest {
     std::optional<Stage> stage;
@@ -26,13 +31,17 @@ struct PipelineRequest {
     std::optional<AdjacentTriangles> adjacent;
     std::optional<std::uint32_t> max_contacts;
     std::optional<double> tolerance, duplicate_tolerance, min_depth, weld;
-    std::string baseline;  ///< path of an older result, or empty
-    std::string report;    ///< path of the HTML report to write, or empty
+    std::optional<ClassSet> classes;  ///< classes of the rows
+    std::string baseline;             ///< path of an older result, or empty
+    std::string report;               ///< path of the HTML report to write, or empty
     io::SceneSpace space;  ///< axis up and unit for the report; unknown: the report uses those of the input formats
 };
 
 /// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
+
+/// Returns the words of classes, with commas: the value of --classes in a fixed order.
+std::string class_list(const ClassSet& classes);
 
 /// Add --stage and --up. `description` is the help text.
 void add_stage_option(Command& command, PipelineRequest& request, const std::string& description);
@@ -41,7 +50,8 @@ void add_up_option(Command& command, PipelineRequest& request, const std::string
 /// Adds --stage, --exclude and --same-parent.
 void add_stage_options(Command& command, PipelineRequest& request);
 
-/// Adds the options of the exact stages: --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth and --weld.
+/// Adds the options of the exact stages: --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --classes
+/// and --weld.
 void add_exact_options(Command& command, PipelineRequest& request);
 
 /// Adds --baseline, --report, --up and --unit.
@@ -54,8 +64,11 @@ Stage stage_of(const DetectRequest& request);
 /// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request);
 
-/// Returns the value of --tolerance. Without the option, returns 2^-22 of the largest coordinate that was rounded to float32
-/// (LoadedScene): two to four steps of float32 at this coordinate. Returns 0 if no coordinate was rounded.
+/// Returns the tolerance without --tolerance: 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene). This is two to four
+/// steps of float32 at this coordinate. Returns 0 if no coordinate was rounded.
+double default_tolerance_of(const SetPair& sets);
+
+/// Returns the value of --tolerance, or the default.
 double tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns whether the request needs filters.

@@ -33,6 +33,7 @@ public:
 
     /// Takes the next collisions of the frame.
     void take(const Batch& batch) { check_->take(batch.pairs(), batch.findings()); }
+    void take(const LeftOut& left_out) { check_->take(left_out.pairs, left_out.findings); }
     /// Checks all collisions of the frame. `excluded`: the pairs that exclusion rules leave out. Throws: as StageCheck::finish().
     StageCheck::Result finish(std::span<const Pair> excluded);
 
@@ -140,6 +141,7 @@ private:
         if (!check) return;
         const Timed timed(run_.report.seconds.verify);
         run_.progress.show("verifying", 0);
+        check->take(filters_->left_out());
         const std::vector<Pair> excluded = filters_->excluded(*engine_, frame);
         const StageCheck::Result result = check->finish(excluded);
         run_.report.collisions_verified = result.judged;

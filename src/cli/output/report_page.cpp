@@ -194,6 +194,7 @@ std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, c
     if (form.features) report->add_fact("tolerance", fmt::format("{:.3g}", tolerance_of(request, pair)));
     for (const std::string& warning : input_warnings(request, pair)) report->add_note(warning);
     if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
+    if (request.pipeline.classes) report->add_fact("classes", class_list(*request.pipeline.classes));
     if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
     if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);
 #ifdef OCTOPAIR_WITH_VIEWER
