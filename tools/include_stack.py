@@ -122,8 +122,8 @@ PUBLIC = {
 THIRD_PARTY = {
     "tbb": {"parallel", "bench/baselines"}, "oneapi": {"parallel"},
     "hwy": {"boxes", "octree", "engine/mpi", "scene", "narrow_phase"},
-    "assimp": {"io"}, "expat.h": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase", "viewer"}, "zlib.h": {"io", "viewer"},
-    "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service"},
+    "assimp": {"io"}, "expat.h": {"io"}, "Eigen": {"narrow_phase"}, "boost": {"narrow_phase", "viewer"}, "zlib.h": {"io", "viewer"}, "minizip": {"io"},
+    "grpc": {"service"}, "grpcpp": {"service"}, "google": {"service"}, "openssl": {"service"}, "xxhash.h": {"service", "io"},
     "prometheus": {"service/server"}, "spdlog": {"service/server", "cli"}, "systemd": {"cli"},
     "CLI": {"cli"}, "fmt": {"io", "cli", "bench"}, "nlohmann": {"io", "service", "viewer", "cli", "bench"},
 }

@@ -39,7 +39,8 @@ REQUIREMENTS = {
     "service": ["grpc/[>=1.54.3 <2]", "protobuf/[>=3.21 <7]", "openssl/[>=3 <4]", "xxhash/[>=0.8.1 <1]", "spdlog/[>=1.10 <2]",
                 "nlohmann_json/[>=3.11 <4]", "prometheus-cpp/[>=1.1 <2]"],
     "program": ["cli11/[>=2.3 <3]", "fmt/[>=9]", "nlohmann_json/[>=3.11 <4]"],
-    "meshes": ["assimp/[>=5.2 <6]", "expat/[>=2.5 <3]", "zlib/[>=1.2.13 <2]"],
+    "meshes": ["assimp/[>=5.2 <6]", "expat/[>=2.5 <3]", "zlib/[>=1.2.13 <2]", "minizip/[>=1.2.13 <2]",
+               "xxhash/[>=0.8.1 <1]"],
     "mpi": ["openmpi/[>=4.1 <6]"],
     "systemd": ["libsystemd/[>=252]"],
     "viewer": ["boost/[>=1.74 <2]", "zlib/[>=1.2.13 <2]", "nlohmann_json/[>=3.11 <4]"],
@@ -65,7 +66,7 @@ PROGRAM_REQUIRES = {
     "program": ["cli11::cli11", "fmt::fmt", "nlohmann_json::nlohmann_json"],
     "service": ["grpc::grpc++_reflection", "xxhash::xxhash", "spdlog::spdlog", "prometheus-cpp::prometheus-cpp-pull",
                 "nlohmann_json::nlohmann_json"],
-    "meshes": ["assimp::assimp", "expat::expat", "zlib::zlib"],
+    "meshes": ["assimp::assimp", "expat::expat", "zlib::zlib", "minizip::minizip", "xxhash::xxhash"],
     "systemd": ["libsystemd::libsystemd"],
 }
 

@@ -124,9 +124,9 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
            max_contacts: Optional[int] = None, tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None,
            min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None, exclude: Optional[PathLike] = None,
            same_parent: Optional[Literal["include", "exclude"]] = None, baseline: Optional[PathLike] = None,
-           report: Optional[PathLike] = None, up: Optional[Literal["y", "z"]] = None, unit: Optional[str] = None, events: bool = False,
-           index_type: Optional[Literal["uint32", "uint64"]] = None, order: Optional[Order] = None, limit: Optional[int] = None,
-           verify: bool = False, engine: Optional[str] = None, threads: Optional[int] = None, workers: Optional[int] = None,
+           statuses: Optional[PathLike] = None, report: Optional[PathLike] = None, up: Optional[Literal["y", "z"]] = None,
+           unit: Optional[str] = None, events: bool = False, index_type: Optional[Literal["uint32", "uint64"]] = None, order: Optional[Order] = None,
+           limit: Optional[int] = None, verify: bool = False, engine: Optional[str] = None, threads: Optional[int] = None, workers: Optional[int] = None,
            token_file: Optional[PathLike] = None, token_in_clear: bool = False, server_user: Optional[str] = None, tls: bool = False,
            tls_authority: Optional[PathLike] = None, tls_certificate: Optional[PathLike] = None, tls_key: Optional[PathLike] = None,
            patience: Optional[float] = None) -> Detection:
@@ -152,8 +152,8 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     exclude, same_parent
         File with rules on names and relations, or relations of IFC elements such as ``"fills,assembly"``; whether pairs of objects with
         the same parent are left out.
-    baseline, report, up, unit
-        File with an older result; page about the collisions, its upward axis, and its unit.
+    baseline, statuses, report, up, unit
+        File with an older result; file with what people decided, which is read and written; page about the collisions, its upward axis, and its unit.
     events : bool
         True: only what began and ended, of a moving scene.
     index_type, order, limit, verify

@@ -74,7 +74,7 @@ _octopair_values() {
         --engine:*) words=$(_octopair_engines "$1") ;;
         :KIND) words=$(_octopair_names "$1" Kinds generate) ;;
         :ID) words=$(_octopair_jobs "$1") ;;
-        -o:FILE | --output:FILE) _octopair_files "$4" npy csv jsonl ;;
+        -o:FILE | --output:FILE) _octopair_files "$4" npy csv jsonl bcf ;;
         *:DIR) compgen -d -- "$4" ;;
         *:FILE | :INPUT) _octopair_files "$4" ;;
         *:*.*) _octopair_files "$4" "${3##*.}" ;;

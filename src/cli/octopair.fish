@@ -83,7 +83,7 @@ function __octopair_values
         case ':ID'
             __octopair_jobs $argv[1]
         case -o:FILE --output:FILE
-            __octopair_files npy csv jsonl
+            __octopair_files npy csv jsonl bcf
         case '*:DIR'
             __fish_complete_directories (commandline -ct)
         case '*:FILE' ':INPUT'

@@ -29,7 +29,7 @@ WORDS = {
     "--log-level": "debug info warn error",
 }
 NOTHING = {"N", "M", "S", "F", "BYTES", "SECONDS", "LENGTH", "UUID", "CLIENT", "USER", "ADDRESS", "HOST:PORT"}
-FILES = ["a.npy", "b.csv", "c.jsonl", "d.pem", "e.html", "f.json", "g.txt", "hnpy"]
+FILES = ["a.npy", "b.csv", "c.jsonl", "c.bcf", "d.pem", "e.html", "f.json", "g.txt", "hnpy"]
 FOLDER = "folder"
 JOB = "0123abcd-0000-4000-8000-00000000abcd"
 # Stands for the program: prints a job without a server, and otherwise runs the program.
@@ -99,7 +99,7 @@ def values_of(program, option, argument, text):
     if argument == "DIR":
         return {FOLDER}
     if option in ("-o", "--output") and argument == "FILE":
-        return ending("npy", "csv", "jsonl")
+        return ending("npy", "csv", "jsonl", "bcf")
     if argument == "FILE":
         return ending()
     if "." in argument:

@@ -27,7 +27,7 @@ TEST_F(Streams, JsonIsKnownByItsFirstByte) {
     const std::string sphere = R"({"shape":{"type":"sphere","radius":1}})";
     const std::string scene = R"( {"objects":[)" + sphere + "," + sphere + "]}";
     const Outcome outcome = shell("echo '" + scene + "' | \"$P\" detect - --quiet --output p.jsonl && cat p.jsonl");
-    EXPECT_EQ(outcome.out, "{\"a\":0,\"b\":1,\"key\":\"1:#0 | 1:#1\",\"class\":\"collision\"}\n") << outcome.err;
+    EXPECT_EQ(outcome.out, "{\"a\":0,\"b\":1,\"key\":\"1#0 | 1#1\",\"class\":\"collision\"}\n") << outcome.err;
 }
 #endif
 

@@ -139,6 +139,18 @@ on_ranks 2 detect $(against_old ranks) --engine mpi
 cmp local.jsonl ranks.jsonl && cmp local.html ranks.html || fail "ranks give another result with a baseline"
 [ "$(grep '"same"' local.json)" = "$(grep '"same"' ranks.json)" ] || fail "another number of same collisions"
 
+# Statuses and BCF. What options leave out on any rank keeps its status, and approved collisions do not count on any rank.
+"$program" detect shapes.json --statuses local_decided.json --output local.bcf --quiet
+on_ranks 3 detect shapes.json --statuses ranks_decided.json --output ranks.bcf --quiet --engine mpi
+cmp local_decided.json ranks_decided.json && cmp local.bcf ranks.bcf || fail "ranks give other statuses or topics"
+sed -i 's/"status": "new"/"status": "approved"/' local_decided.json ranks_decided.json
+on_ranks 3 detect shapes.json --statuses ranks_decided.json --output ranks.csv --fail-on-collision --quiet --engine mpi ||
+    fail "approved collisions count on ranks"
+on_ranks 2 detect shapes.json --stage features --statuses ranks_decided.json --output ranks.csv --quiet --engine mpi \
+    --classes touching --exclude rules.json
+[ "$(grep -c '"status": "approved"' local_decided.json)" = "$(grep -c '"status": "approved"' ranks_decided.json)" ] ||
+    fail "ranks resolve what options leave out"
+
 echo '{"objects": [{"shape": {"type": "sphere", "radius": 1}}, {"shape": {"type": "sphere", "radius": -1}}]}' > bad.json
 echo '{"ignored_pairs": [["part 1", "nobody"]]}' > nobody.json
 refuses 3 'bad.json: .*radius' bad.json

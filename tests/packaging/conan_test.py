@@ -28,7 +28,7 @@ TARGETS = {
 }
 # Packages of ConanCenter.
 CENTER = {"onetbb", "highway", "eigen", "boost", "grpc", "protobuf", "openssl", "xxhash", "spdlog", "cli11", "fmt", "nlohmann_json",
-          "assimp", "expat", "prometheus-cpp", "openmpi", "libsystemd", "zlib"}
+          "assimp", "expat", "prometheus-cpp", "openmpi", "libsystemd", "zlib", "minizip"}
 
 
 def load_recipe(path):

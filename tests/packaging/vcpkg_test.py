@@ -22,7 +22,7 @@ FEATURE = {"description", "dependencies", "supports", "license"}
 DEPENDENCY = {"name", "features", "host", "default-features", "platform", "version>="}
 # Ports that vcpkg has.
 PORTS = {"highway", "tbb", "vcpkg-cmake", "vcpkg-cmake-config", "grpc", "protobuf", "openssl", "xxhash", "spdlog", "cli11", "fmt",
-         "nlohmann-json", "assimp", "expat", "prometheus-cpp", "mpi", "boost-asio", "boost-beast", "boost-headers", "boost-multiprecision", "zlib", "eigen3", "libsystemd", "octopair"}
+         "nlohmann-json", "assimp", "expat", "minizip", "prometheus-cpp", "mpi", "boost-asio", "boost-beast", "boost-headers", "boost-multiprecision", "zlib", "eigen3", "libsystemd", "octopair"}
 IDENTIFIER = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 PLATFORM = re.compile(r"!?\(?(windows|linux|osx|static|x64|arm64)\)?([&|] *!?\(?(windows|linux|osx|static|x64|arm64)\)?)*")
 

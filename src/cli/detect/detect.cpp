@@ -53,7 +53,9 @@ private:
 };
 
 int exit_status_of(const DetectRequest& request, const DetectReport& report) {
-    return request.fail_on_collision && (report.pairs > 0 || report.truncated) ? 1 : 0;
+    const std::uint64_t approved =
+        report.statuses ? report.statuses->found[std::size_t(io::Status::approved)] : std::uint64_t(0);
+    return request.fail_on_collision && (report.pairs > approved || report.truncated) ? 1 : 0;
 }
 
 /// Runs the search on the processes of a group. Its first rank writes the outcome.
@@ -104,7 +106,9 @@ int run_on_ranks(const DetectRequest& request) {
             // All ranks end with the status of rank 0.
             return cluster.all_gather(find_events_on_ranks(request, cluster, interrupt.token())).front();
         }
-        return exit_status_of(request, detect_and_report(request, *ranks_of(cluster), interrupt.token()));
+        const DetectReport report = detect_and_report(request, *ranks_of(cluster), interrupt.token());
+        // Only rank 0 knows the statuses.
+        return cluster.all_gather(exit_status_of(request, report)).front();
     } catch (const Error& error) {
         if (!cluster.ends_alike()) throw;
         return cluster.fail_together(error);

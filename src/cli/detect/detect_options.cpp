@@ -66,9 +66,10 @@ void add_order_options(Command& command, DetectRequest& request, const std::stri
         .type_name("N");
 }
 
-Option add_output_option(Command& command, std::string& output) {
+Option add_output_option(Command& command, std::string& output, const char* formats) {
     return command
-        .add_option("-o,--output", output, "file for the pairs: .npy, .csv or .jsonl (default: CSV on standard output)")
+        .add_option("-o,--output", output,
+                    fmt::format("file for the pairs: {} (default: CSV on standard output)", formats))
         .type_name("FILE");
 }
 
@@ -85,7 +86,7 @@ void add_what(Command& command, DetectRequest& request) {
 
 void add_output_options(Command& command, DetectRequest& request) {
     command.begin_section("Output");
-    const Option output = add_output_option(command, request.output);
+    const Option output = add_output_option(command, request.output, ".npy, .csv, .jsonl or .bcf");
     command
         .add_option(
             "--index-type",
@@ -102,7 +103,7 @@ void add_output_options(Command& command, DetectRequest& request) {
     command.add_flag("--verify", request.verify,
                      "check the result by a second algorithm; exit status 6 if it is wrong");
     command.add_flag("--fail-on-collision", request.fail_on_collision,
-                     "exit status 1 if a pair is found, 3 if an input has no object");
+                     "exit status 1 if a pair is found that is not approved (--statuses), 3 if an input has no object");
     command.add_flag("--quiet", request.quiet, "no progress and no summary on standard error");
 }
 
@@ -175,8 +176,10 @@ void check_detect_options(DetectRequest& request) {
     if (request.events) check_event_options(request);
     check_index_type(request);
     if (request.verify) check_verify_options(request);
-    check_outputs(all_input_files(request),
-                  {{"--output", request.output}, {"--report", request.pipeline.report}, {"--stats", request.stats}});
+    check_outputs(all_input_files(request), {{"--output", request.output},
+                                             {"--statuses", request.pipeline.statuses},
+                                             {"--report", request.pipeline.report},
+                                             {"--stats", request.stats}});
     check_pipeline_options(request);
 }
 

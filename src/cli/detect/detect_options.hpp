@@ -14,8 +14,8 @@ namespace octopair::cli {
 void add_objects_option(Command& command, DetectRequest& request);
 void add_margin_option(Command& command, DetectRequest& request);
 
-/// Adds --output.
-Option add_output_option(Command& command, std::string& output);
+/// Adds --output. `formats`: the endings of its formats, for the help.
+Option add_output_option(Command& command, std::string& output, const char* formats);
 
 /// Adds INPUT, --against, --objects, --margin and --padding, in the sections "Input" and "What counts".
 void add_scene_options(Command& command, DetectRequest& request);

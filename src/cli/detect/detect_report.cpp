@@ -249,6 +249,32 @@ nlohmann::ordered_json classes_json(const DetectReport& report) {
     return classes;
 }
 
+/// Returns the number of rows of a status. Resolved: the number of collisions that are not found any more.
+std::uint64_t count_of(io::Status status, const io::StatusCounts& counts) {
+    return status == io::Status::resolved ? counts.resolved : counts.found[std::size_t(status)];
+}
+
+/// Returns the line of the statuses; empty without --statuses.
+std::string statuses_text(const DetectReport& report) {
+    if (!report.statuses) return {};
+    std::string text;
+    for (std::size_t i = 0; i < io::status_values; ++i) {
+        const io::Status status{std::uint8_t(i)};
+        text += fmt::format("{}{} {}", text.empty() ? "statuses    " : ", ",
+                            grouped(count_of(status, *report.statuses)), io::word_of(status));
+    }
+    return text + '\n';
+}
+
+nlohmann::ordered_json statuses_json(const io::StatusCounts& counts) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < io::status_values; ++i) {
+        const io::Status status{std::uint8_t(i)};
+        json[std::string(io::word_of(status))] = count_of(status, counts);
+    }
+    return json;
+}
+
 /// Returns a line per filter: pairs out and in, and the seconds summed over all threads.
 std::string filters_text(const DetectReport& report) {
     if (report.filters.empty()) return {};
@@ -277,6 +303,7 @@ std::string summary_text(const DetectReport& report) {
                             grouped(report.changes->same), grouped(report.changes->gone));
     }
     text += unit_text(report) + elements_text(report);
+    text += statuses_text(report);
     for (const std::string& warning : report.warnings) text += fmt::format("warning     {}\n", warning);
     text += exact_text(report) + filters_text(report) + verified_text(report) + time_text(report);
     const double objects = double(report.objects) * double(report.frames);
@@ -317,6 +344,7 @@ std::string stats_json(const DetectReport& report) {
         const io::ChangeCounts& changes = *report.changes;
         stats.update({{"new", changes.begun}, {"same", changes.same}, {"gone", changes.gone}});
     }
+    if (report.statuses) stats["statuses"] = statuses_json(*report.statuses);
     if (report.events) stats.update({{"began", report.events->began}, {"ended", report.events->ended}});
     return stats.dump(2) + '\n';
 }

@@ -13,6 +13,7 @@
 #include "cli/input/input_set.hpp"
 #include "io/loaded_scene.hpp"
 #include "io/results/baseline.hpp"
+#include "io/results/statuses.hpp"
 #include "octopair/engine.hpp"
 #include "octopair/pipeline.hpp"
 
@@ -53,6 +54,7 @@ struct DetectReport {
     io::ElementCounts elements;               ///< elements of IFC models among the inputs
     std::vector<std::string> warnings;        ///< about the inputs, and about rules; each one line
     std::optional<io::ChangeCounts> changes;  ///< nothing without --baseline
+    std::optional<io::StatusCounts> statuses;  ///< nothing without --statuses
     std::optional<EventCounts> events;  ///< nothing without --events; with it, `entries` and `steps` are not known
     std::uint64_t entries = 0;
     StepSeconds steps;

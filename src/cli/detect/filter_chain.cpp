@@ -45,8 +45,10 @@ private:
 
 class Exclusions {
 public:
-    Exclusions(Pipeline& pipeline, const DetectRequest& request, const SetPair& sets)
-        : pipeline_(pipeline), request_(request), sets_(sets) {}
+    using AddFilter = std::function<void(std::unique_ptr<Filter>)>;
+
+    Exclusions(AddFilter add, const DetectRequest& request, const SetPair& sets)
+        : add_(std::move(add)), request_(request), sets_(sets) {}
 
     bool add(const io::ExclusionRules& rules) {
         if (stage_of(request_) != Stage::pairs) add_groups();
@@ -142,11 +144,11 @@ private:
     }
 
     void add_filter(std::unique_ptr<Filter> filter) {
-        pipeline_.add(std::move(filter));
+        add_(std::move(filter));
         any_ = true;
     }
 
-    Pipeline& pipeline_;
+    AddFilter add_;
     bool any_ = false;
     const DetectRequest& request_;
     const SetPair& sets_;
@@ -160,21 +162,13 @@ io::ExclusionRules read_exclusions(const DetectRequest& request) {
     return io::read_exclusion_rules(file);
 }
 
-/// Adds the filters of --exclude, of --same-parent, and of the groups in scene files. The pipeline borrows from the sets.
-/// Returns whether it has added any filter.
-/// Throws: Error{bad_input} for a rule about a name that no object has; Error{usage} for rules about names if the objects have
-/// none.
-bool add_exclusions(Pipeline& pipeline, const io::ExclusionRules& rules, const DetectRequest& request,
-                    const SetPair& sets) {
-    return Exclusions(pipeline, request, sets).add(rules);
-}
-
 class RequestedFilters final : public FilterChain {
 public:
     RequestedFilters(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
         : sets_(sets),
           stop_(stop),
           margin_(request.margin),
+          keeps_left_out_(!request.pipeline.statuses.empty()),
           pipeline_(local_threads(request.engine)),
           exclusions_(local_threads(request.engine)) {
         if (sets.first.scene.triangles) {
@@ -182,9 +176,13 @@ public:
             return;
         }
         const io::ExclusionRules rules = read_exclusions(request);
-        add_exclusions(pipeline_, rules, request, sets);
+        Exclusions([this](std::unique_ptr<Filter> filter) { add_choosing(std::move(filter)); }, request, sets)
+            .add(rules);
+        if (request.verify) {
+            const auto add = [this](std::unique_ptr<Filter> filter) { exclusions_.add(std::move(filter)); };
+            has_exclusions_ = Exclusions(add, request, sets).add(rules);
+        }
         warnings_ = relation_warnings(rules.relations, sets);
-        if (request.verify) has_exclusions_ = add_exclusions(exclusions_, rules, request, sets);
         if (stage_of(request) != Stage::pairs) add_exact(request);
     }
 
@@ -228,7 +226,8 @@ public:
         return excluded;
     }
 
-    const LeftOut& left_out() const override { return left_out_; }
+    std::span<const Pair> left_out() const override { return left_out_.pairs; }
+    const LeftOut& of_other_classes() const override { return of_other_classes_; }
 
 private:
     Input input_of(std::uint64_t frame) const {
@@ -261,13 +260,21 @@ private:
         standard.max_contacts = 0;
         const double duplicate_tolerance = options.duplicate_tolerance.value_or(options.tolerance);
         if (options.tolerance == standard.tolerance && duplicate_tolerance == standard.tolerance) return;
-        pipeline_.add(make_early_depth_filter(make_exact_feature_filter(first, standard, other), min_depth));
+        add_choosing(make_early_depth_filter(make_exact_feature_filter(first, standard, other), min_depth));
     }
 
     void add_row_filters(const DetectRequest& request) {
         const PipelineRequest& asked = request.pipeline;
-        if (asked.min_depth) pipeline_.add(make_depth_filter(*asked.min_depth));
-        if (asked.classes) pipeline_.add(make_class_filter(*asked.classes, request.verify ? &left_out_ : nullptr));
+        if (asked.min_depth) add_choosing(make_depth_filter(*asked.min_depth));
+        if (!asked.classes) return;
+        std::unique_ptr<Filter> classes = make_class_filter(*asked.classes);
+        if (request.verify) classes = make_recorded_filter(std::move(classes), of_other_classes_);
+        add_choosing(std::move(classes));
+    }
+
+    /// Adds a filter that leaves out collisions by options.
+    void add_choosing(std::unique_ptr<Filter> filter) {
+        pipeline_.add(keeps_left_out_ ? make_recorded_filter(std::move(filter), left_out_) : std::move(filter));
     }
 
     void add_triangles(const DetectRequest& request) {
@@ -289,11 +296,13 @@ private:
     SetPair sets_;
     std::stop_token stop_;
     double margin_;
+    bool keeps_left_out_;
     Pipeline pipeline_;
     Pipeline exclusions_;  // the exclusion rules alone, with --verify
     bool has_exclusions_ = false;
     std::vector<std::string> warnings_;
-    LeftOut left_out_;  // by --classes, with --verify
+    LeftOut left_out_;                                  // by all filters that choose rows, with --statuses
+    LeftOut of_other_classes_{.keeps_findings = true};  // by --classes, with --verify
 };
 
 }  // namespace

@@ -28,8 +28,10 @@ public:
     /// Finds the pairs of a frame that exclusion rules leave out, ascending. Requires: the request has --verify.
     /// Memory: 8 bytes per pair of boxes, if there are rules.
     virtual std::vector<Pair> excluded(Engine& engine, std::uint64_t frame) = 0;
+    /// Returns the pairs that options such as --exclude, --min-depth and --classes have left out. Requires: the request has --statuses.
+    virtual std::span<const Pair> left_out() const = 0;
     /// Returns the collisions that --classes has left out. Requires: the request has --verify.
-    virtual const LeftOut& left_out() const = 0;
+    virtual const LeftOut& of_other_classes() const = 0;
 };
 
 /// Makes the filters of the request. Borrows the shapes and names of the sets.

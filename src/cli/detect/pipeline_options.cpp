@@ -22,6 +22,12 @@ constexpr bool with_pipeline = true;
 constexpr bool with_pipeline = false;
 #endif
 
+#ifdef OCTOPAIR_WITH_MESHES
+constexpr bool with_bcf = true;
+#else
+constexpr bool with_bcf = false;
+#endif
+
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorCode::usage, what); }
 
 Stage parse_stage(const std::string& word) {
@@ -153,8 +159,13 @@ void add_report_options(Command& command, PipelineRequest& request) {
         .add_option("--baseline", request.baseline,
                     "compare with an older result: mark collisions as new, same or gone")
         .type_name("OLD.jsonl");
+    command
+        .add_option("--statuses", request.statuses,
+                    "what people decided about collisions: read, and written with what is found")
+        .type_name("FILE.json");
     command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
-    add_up_option(command, request, "axis that points up in the report: y or z (default: that of the file, or z)");
+    add_up_option(command, request,
+                  "axis that points up in the report and in BCF: y or z (default: that of the file, or z)");
     command
         .add_option(
             "--unit",
@@ -162,7 +173,7 @@ void add_report_options(Command& command, PipelineRequest& request) {
                 check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
                 request.space.unit = word;
             },
-            "unit of lengths in the report: mm, cm, dm, m, km, in or ft (default: that of the file)")
+            "unit of lengths in the report and in BCF: mm, cm, dm, m, km, in or ft (default: that of the file)")
         .type_name("UNIT");
 }
 
@@ -274,11 +285,26 @@ void check_exact_options(const DetectRequest& request) {
     if (!request.padding.empty()) refuse("--padding: with --objects triangle only at --stage pairs");
 }
 
-/// Checks --baseline, --report, --up and --unit.
+bool writes_bcf(const DetectRequest& request) {
+    return !request.output.empty() && io::result_format(request.output) == io::ResultFormat::bcf;
+}
+
+/// Throws: Error{usage} if --output is a BCF file and the result cannot be topics.
+void check_bcf_output(const DetectRequest& request) {
+    if (!writes_bcf(request)) return;
+    const auto refuse_output = [&](const char* why) { refuse(fmt::format("{}: {}", request.output, why)); };
+    if (!with_bcf) refuse_output("this octopair was built without mesh files, and so without BCF");
+    if (stage_of(request) == Stage::pairs) refuse_output("BCF holds collisions: only with --stage objects or features");
+    if (request.mesh_objects == io::MeshObjects::triangle)
+        refuse_output("BCF is about elements: not with --objects triangle");
+}
+
+/// Checks --baseline, --statuses, --report, --up and --unit.
 void check_outcome_options(const DetectRequest& request) {
     const PipelineRequest& asked = request.pipeline;
     for (const auto& [option, value] :
-         {std::pair("--baseline", &asked.baseline), std::pair("--report", &asked.report)}) {
+         {std::pair("--baseline", &asked.baseline), std::pair("--statuses", &asked.statuses),
+          std::pair("--report", &asked.report)}) {
         if (value->empty()) continue;
         if (stage_of(request) == Stage::pairs) refuse(fmt::format("{}: only with --stage objects or features", option));
         if (request.count_only) refuse(fmt::format("{}: not with --count-only", option));
@@ -290,8 +316,12 @@ void check_outcome_options(const DetectRequest& request) {
     if (older == ".csv" || older == ".npy") {
         refuse(fmt::format("--baseline: {}: the older result must be a .jsonl file", asked.baseline));
     }
-    if (asked.report.empty() && asked.space.up != io::UpAxis::unknown) refuse("--up: only with --report");
-    if (asked.report.empty() && !asked.space.unit.empty()) refuse("--unit: only with --report");
+    if (!asked.statuses.empty() && io::ending_of(asked.statuses) != ".json") {
+        refuse(fmt::format("--statuses: {}: the name of the file must end in .json", asked.statuses));
+    }
+    const bool has_space = !asked.report.empty() || writes_bcf(request);
+    if (!has_space && asked.space.up != io::UpAxis::unknown) refuse("--up: only with --report or an output in BCF");
+    if (!has_space && !asked.space.unit.empty()) refuse("--unit: only with --report or an output in BCF");
     if (!asked.baseline.empty() && request.limit)
         refuse("--baseline: not with --limit, which may leave out new collisions");
 }
@@ -304,6 +334,7 @@ void check_pipeline_options(const DetectRequest& request) {
         refuse(fmt::format("--objects triangle: {} has only boxes, no triangles", *boxes));
     check_exact_options(request);
     check_classes(request);
+    check_bcf_output(request);
     check_outcome_options(request);
     if (!has_filters(request)) return;
     const std::string asked = filter_option(request);

@@ -33,6 +33,7 @@ struct PipelineRequest {
     std::optional<double> tolerance, duplicate_tolerance, min_depth, weld;
     std::optional<ClassSet> classes;  ///< classes of the rows
     std::string baseline;             ///< path of an older result, or empty
+    std::string statuses;             ///< path of the file of statuses to read and write, or empty
     std::string report;               ///< path of the HTML report to write, or empty
     io::SceneSpace space;  ///< axis up and unit for the report; unknown: the report uses those of the input formats
 };
@@ -54,7 +55,7 @@ void add_stage_options(Command& command, PipelineRequest& request);
 /// and --weld.
 void add_exact_options(Command& command, PipelineRequest& request);
 
-/// Adds --baseline, --report, --up and --unit.
+/// Adds --baseline, --statuses, --report, --up and --unit.
 void add_report_options(Command& command, PipelineRequest& request);
 
 /// Returns the stage of --stage. Without it, returns `objects` if all inputs have shapes, this build has the pipeline, and the

@@ -25,8 +25,8 @@ namespace octopair::cli {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> options_of_inputs = {"INPUT", "--against", "--padding", "--exclude",
-                                                               "--baseline"};
+constexpr std::array<std::string_view, 6> options_of_inputs = {"INPUT",     "--against",  "--padding",
+                                                               "--exclude", "--baseline", "--statuses"};
 constexpr std::array<std::string_view, 2> options_of_a_rank = {"--threads", "--quiet"};
 
 bool contains(std::span<const std::string_view> names, std::string_view name) {

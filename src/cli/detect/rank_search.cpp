@@ -45,6 +45,8 @@ public:
     PipelineSummary run(const PairList& pairs, const Options& options, CollisionPiece* kept);
 
     const std::vector<std::string>& warnings() const { return filters_->warnings(); }
+    /// Returns the pairs that options have left out on this rank. Requires: the request has --statuses.
+    std::span<const Pair> left_out() const { return filters_->left_out(); }
 
 private:
     /// Replaces `summary` by the sums over all ranks. Returns how many collisions this rank keeps under the limit.
@@ -168,8 +170,9 @@ public:
     void finish() override {
         if (output_ == nullptr) return;
         const Timed timed(run_.report.seconds.write);
-        output_->finish();
+        output_->finish(!run_.report.truncated);
         run_.report.changes = output_->changes();
+        run_.report.statuses = output_->statuses();
     }
 
 private:
@@ -189,6 +192,7 @@ private:
         run_.progress.clear();
         const Timed timed(run_.report.seconds.write);
         output_->write(frame, kept);
+        if (!run_.request.pipeline.statuses.empty()) output_->leave_out(filters_->left_out());
     }
 #else
     void filter(std::uint64_t) {}  // a build without the pipeline refuses the options that need filters

@@ -32,26 +32,47 @@ private:
 
 class ClassFilter final : public Filter {
 public:
-    ClassFilter(const ClassSet& classes, LeftOut* left_out) : classes_(classes), left_out_(left_out) {}
+    explicit ClassFilter(const ClassSet& classes) : classes_(classes) {}
 
     std::string_view name() const override { return "classes"; }
 
     void apply(Batch& batch) const override {
-        batch.keep_if([&](std::size_t i) {
-            const Finding& finding = batch.finding(i);
-            if (classes_[std::size_t(finding.collision_class)]) return true;
-            if (left_out_ != nullptr) {
-                const std::lock_guard lock(left_out_->mutex);
-                left_out_->pairs.push_back(batch.pairs()[i]);
-                left_out_->findings.push_back(finding);
-            }
-            return false;
-        });
+        batch.keep_if([&](std::size_t i) { return classes_[std::size_t(batch.finding(i).collision_class)]; });
     }
 
 private:
     ClassSet classes_;
-    LeftOut* left_out_;
+};
+
+class RecordedFilter final : public Filter {
+public:
+    RecordedFilter(std::unique_ptr<Filter> filter, LeftOut& left_out)
+        : filter_(std::move(filter)), left_out_(left_out) {}
+
+    std::string_view name() const override { return filter_->name(); }
+    std::size_t least_batch() const override { return filter_->least_batch(); }
+
+    void apply(Batch& batch) const override {
+        const Batch before = batch;
+        filter_->apply(batch);
+        if (batch.pairs().size() == before.pairs().size()) return;
+        // Filters keep the order of the pairs.
+        const std::lock_guard lock(left_out_.mutex);
+        auto kept = batch.pairs().begin();
+        for (std::size_t i = 0; i < before.pairs().size(); ++i) {
+            if (kept != batch.pairs().end() && *kept == before.pairs()[i]) {
+                ++kept;
+                continue;
+            }
+            left_out_.pairs.push_back(before.pairs()[i]);
+            if (!left_out_.keeps_findings) continue;
+            left_out_.findings.push_back(before.findings().empty() ? Finding() : before.findings()[i]);
+        }
+    }
+
+private:
+    std::unique_ptr<Filter> filter_;
+    LeftOut& left_out_;
 };
 
 }  // namespace
@@ -60,8 +81,10 @@ std::unique_ptr<Filter> make_early_depth_filter(std::unique_ptr<Filter> features
     return std::make_unique<EarlyDepthFilter>(std::move(features), min_depth);
 }
 
-std::unique_ptr<Filter> make_class_filter(const ClassSet& classes, LeftOut* left_out) {
-    return std::make_unique<ClassFilter>(classes, left_out);
+std::unique_ptr<Filter> make_class_filter(const ClassSet& classes) { return std::make_unique<ClassFilter>(classes); }
+
+std::unique_ptr<Filter> make_recorded_filter(std::unique_ptr<Filter> filter, LeftOut& left_out) {
+    return std::make_unique<RecordedFilter>(std::move(filter), left_out);
 }
 
 }  // namespace octopair::cli

@@ -18,14 +18,18 @@ namespace octopair::cli {
 /// filter. It drops pairs that are less deep than `min_depth` by the finding of `features`, but leaves the findings of the batch as they are.
 std::unique_ptr<Filter> make_early_depth_filter(std::unique_ptr<Filter> features, double min_depth);
 
-/// Collisions that --classes leaves out, for --verify. Thread safety: several threads may add.
+/// Returns the filter "classes", which keeps collisions of these classes.
+std::unique_ptr<Filter> make_class_filter(const ClassSet& classes);
+
+/// Pairs that a filter has dropped. Thread safety: several threads may add.
 struct LeftOut {
-    std::mutex mutex;
-    std::vector<Pair> pairs;
-    std::vector<Finding> findings;
+    bool keeps_findings = false;
+    std::mutex mutex = {};
+    std::vector<Pair> pairs = {};
+    std::vector<Finding> findings = {};  ///< with keeps_findings, one per pair; empty findings before the exact filters
 };
 
-/// Returns the filter "classes", which keeps collisions of these classes. Adds the others to `left_out` unless that is null.
-std::unique_ptr<Filter> make_class_filter(const ClassSet& classes, LeftOut* left_out);
+/// Returns a filter that does the same as `filter`, and adds the dropped pairs to `left_out`. Borrows `left_out`.
+std::unique_ptr<Filter> make_recorded_filter(std::unique_ptr<Filter> filter, LeftOut& left_out);
 
 }  // namespace octopair::cli

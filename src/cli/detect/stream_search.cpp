@@ -99,8 +99,9 @@ public:
 
     void finish() override {
         if (writer_ == nullptr) return;
-        timed_write([&] { writer_->finish(); });
+        timed_write([&] { writer_->finish(!run_.report.truncated); });
         run_.report.changes = writer_->changes();
+        run_.report.statuses = writer_->statuses();
     }
 
 private:
@@ -136,12 +137,13 @@ private:
         const bool counts_only = writer_ == nullptr && !check;
         const PipelineSummary summary = filters_->run(*engine_, frame, counts_only ? CollisionSink() : sink, options);
         run_.report.add(summary, run_.report.seconds.write - written_before);
+        if (writer_ != nullptr) timed_write([&] { writer_->leave_out(filters_->left_out()); });
         if (run_.request.verify && !check && stage_of(run_.request) != Stage::pairs)
             run_.report.add_not_checked("collisions of triangles");
         if (!check) return;
         const Timed timed(run_.report.seconds.verify);
         run_.progress.show("verifying", 0);
-        check->take(filters_->left_out());
+        check->take(filters_->of_other_classes());
         const std::vector<Pair> excluded = filters_->excluded(*engine_, frame);
         const StageCheck::Result result = check->finish(excluded);
         run_.report.collisions_verified = result.judged;

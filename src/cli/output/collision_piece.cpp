@@ -116,7 +116,8 @@ void CollisionPiece::cut(std::uint64_t most) {
     last.contacts.resize(contacts);
 }
 
-void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer) {
+void relay(Cluster& cluster, const CollisionPiece& piece,
+           const std::function<void(std::span<const Pair>, std::span<const Finding>)>& take) {
     const std::vector<std::uint64_t> blocks = cluster.all_gather(std::uint64_t(piece.blocks().size()));
     for (unsigned from = 0; from < cluster.ranks(); ++from) {
         BlockTransfer transfer(cluster, from);
@@ -125,7 +126,7 @@ void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer) {
             const Block& own = cluster.rank() == from ? piece.blocks()[i] : none;
             const Block& received = from == 0 ? own : transfer.send(own);
             cluster.together([&] {
-                if (writer != nullptr) writer->write(received.pairs, received.full_findings());
+                if (cluster.first()) take(received.pairs, received.full_findings());
             });
         }
     }

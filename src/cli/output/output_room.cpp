@@ -43,6 +43,7 @@ std::optional<ShortestRows> rows_of(const DetectRequest& request) {
         case io::ResultFormat::jsonl:
             return ShortestRows{std::string_view("{\"a\":,\"b\":}\n").size(), join};
         case io::ResultFormat::npy:
+        case io::ResultFormat::bcf:
             break;
     }
     return {};

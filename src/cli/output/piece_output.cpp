@@ -34,7 +34,7 @@ public:
         write_piece(frame, io::NpyType::uint64, piece.size(), std::span<const std::span<const Pair64>>(&piece, 1));
     }
     void write(std::uint64_t, const CollisionPiece&) override {}  // never called: RelayedOutput writes collisions
-    void finish() override {}
+    void finish(bool) override {}
 
 private:
     // NOLINTNEXTLINE(readability-function-size): frame, data, number and place are one concept here.
@@ -98,11 +98,13 @@ public:
     void write(std::uint64_t frame, const CollisionPiece& piece) override {
         write_frame(frame, [&] { relay_collisions(piece); });
     }
-    void finish() override {
+    void leave_out(std::span<const Pair> pairs) override { relay_left_out(pairs); }
+    void finish(bool complete) override {
         cluster_.together([&] {
-            if (writer_) writer_->finish();
+            if (writer_) writer_->finish(complete);
         });
     }
+    std::optional<io::StatusCounts> statuses() const override { return writer_ ? writer_->statuses() : std::nullopt; }
     std::optional<io::ChangeCounts> changes() const override { return writer_ ? writer_->changes() : std::nullopt; }
 
 private:
@@ -116,9 +118,17 @@ private:
         });
     }
 #ifdef OCTOPAIR_WITH_PIPELINE
-    void relay_collisions(const CollisionPiece& piece) { relay(cluster_, piece, writer_.get()); }
+    void relay_collisions(const CollisionPiece& piece) {
+        relay(cluster_, piece, [this](auto pairs, auto findings) { writer_->write(pairs, findings); });
+    }
+    void relay_left_out(std::span<const Pair> pairs) {
+        CollisionPiece piece;
+        piece.add(pairs, {});
+        relay(cluster_, piece, [this](auto left_out, auto) { writer_->leave_out(left_out); });
+    }
 #else
     void relay_collisions(const CollisionPiece&) {}  // a build without filters has no collisions
+    void relay_left_out(std::span<const Pair>) {}
 #endif
 
     Cluster& cluster_;

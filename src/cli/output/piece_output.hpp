@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -60,9 +61,10 @@ private:
     std::uint64_t size_ = 0;
 };
 
-/// Collective. Writes the pieces of all ranks, in the order of the ranks, block by block. `writer` is null except on rank 0.
-/// Throws: what the writer throws, on all ranks.
-void relay(Cluster& cluster, const CollisionPiece& piece, FoundWriter* writer);
+/// Collective. Calls take(pairs, findings) on rank 0 with the pieces of all ranks, in the order of the ranks, block by block.
+/// Throws: what `take` throws, on all ranks.
+void relay(Cluster& cluster, const CollisionPiece& piece,
+           const std::function<void(std::span<const Pair>, std::span<const Finding>)>& take);
 
 // piece_output.cpp
 
@@ -75,10 +77,15 @@ public:
     /// Throws: Error{usage} unless the output is an .npy file.
     virtual void write(std::uint64_t frame, std::span<const Pair64> piece) = 0;
     virtual void write(std::uint64_t frame, const CollisionPiece& piece) = 0;
-    virtual void finish() = 0;
+    /// Takes the pairs that options leave out on this rank, for --statuses.
+    virtual void leave_out(std::span<const Pair>) {}
+    /// `complete`: false if --limit has cut the result.
+    virtual void finish(bool complete) = 0;
     /// Returns, on the first rank, how the result differs from the older result of --baseline; nothing without --baseline. Requires:
     /// finish() was called.
     virtual std::optional<io::ChangeCounts> changes() const { return std::nullopt; }
+    /// Returns, on the first rank, the number of collisions by status; nothing without --statuses. Requires: finish() was called.
+    virtual std::optional<io::StatusCounts> statuses() const { return std::nullopt; }
 };
 
 /// Borrows the request, the cluster and, on the first rank, the sets.

@@ -32,16 +32,6 @@ std::string joined(const std::vector<std::string>& words) {
     return all;
 }
 
-/// Returns the axis up and the unit: from the options if given, else from the inputs. The axis is unknown if the inputs differ. All inputs
-/// that state a unit have been converted to the unit of the first.
-io::SceneSpace report_space(const DetectRequest& request, const FoundIn& sets) {
-    io::SceneSpace space = request.pipeline.space;
-    const io::SceneSpace &first = sets.first.scene.space, &second = sets.second.scene.space;
-    if (space.up == io::UpAxis::unknown && first.up == second.up) space.up = first.up;
-    if (space.unit.empty()) space.unit = first.unit.empty() ? second.unit : first.unit;
-    return space;
-}
-
 #ifdef OCTOPAIR_WITH_VIEWER
 /// The viewer's page for a report: the objects of the inputs, and the collisions of the report.
 class ReportView {
@@ -177,6 +167,14 @@ private:
 
 }  // namespace
 
+io::SceneSpace space_of_result(const DetectRequest& request, const FoundIn& sets) {
+    io::SceneSpace space = request.pipeline.space;
+    const io::SceneSpace &first = sets.first.scene.space, &second = sets.second.scene.space;
+    if (space.up == io::UpAxis::unknown && first.up == second.up) space.up = first.up;
+    if (space.unit.empty()) space.unit = first.unit.empty() ? second.unit : first.unit;
+    return space;
+}
+
 std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
                                                  const io::CollisionForm& form) {
     io::ReportScene scene;
@@ -185,7 +183,7 @@ std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, c
     scene.a = sets.first.frame(0).boxes;
     scene.b = sets.second.frame(0).boxes;
     scene.join = !request.against.empty();
-    scene.space = report_space(request, sets);
+    scene.space = space_of_result(request, sets);
     auto report = std::make_unique<io::HtmlReport>(std::make_unique<io::AtomicFile>(request.pipeline.report), scene);
     const std::uint64_t objects = sets.first.scene.objects + (scene.join ? sets.second.scene.objects : 0);
     report->add_fact("objects", fmt::format("{}", objects));

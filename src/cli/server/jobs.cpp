@@ -205,7 +205,7 @@ void add_owner_option(Command& command, JobRequest& request) {
 
 void add_result_options(Command& command, JobRequest& request) {
     command.begin_section("Output");
-    add_output_option(command, request.output);
+    add_output_option(command, request.output, ".npy, .csv or .jsonl");
     const Option keep = command.add_flag("--keep", request.keep, "keep the job and its result on the server (default)");
     command
         .add_flag("--release", request.release,
@@ -249,7 +249,7 @@ void add_result(Command& program, Action& action) {
     command.callback([request, &action] {
         check_server_named(request->server);
         if (request->output == "-") request->output.clear();
-        if (!request->output.empty()) (void)io::result_format(request->output);
+        if (!request->output.empty()) (void)io::pairs_format(request->output);
         action = [request] { return run_result(*request); };
     });
 }

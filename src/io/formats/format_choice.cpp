@@ -268,9 +268,18 @@ ResultFormat result_format(const std::string& path) {
     if (ending == ".npy") return ResultFormat::npy;
     if (ending == ".csv") return ResultFormat::csv;
     if (ending == ".jsonl") return ResultFormat::jsonl;
+    if (ending == ".bcf" || ending == ".bcfzip") return ResultFormat::bcf;
     if (path == "-" || path.starts_with("/dev/")) return ResultFormat::csv;
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("{}: unknown file type; the name of a result must end in .npy, .csv, .jsonl or .bcf", path));
+}
+
+ResultFormat pairs_format(const std::string& path) {
+    const ResultFormat format = result_format(path);
+    if (format != ResultFormat::bcf) return format;
     throw Error(ErrorCode::usage,
-                fmt::format("{}: unknown file type; the name of a pairs file must end in .npy, .csv or .jsonl", path));
+                fmt::format("{}: BCF holds collisions, not pairs of boxes; write pairs to .npy, .csv or .jsonl", path));
 }
 
 bool is_array_file(const std::string& path) { return !path.empty() && result_format(path) == ResultFormat::npy; }

@@ -48,8 +48,8 @@ std::string name_warning(const std::string& path);
 /// Format of a scene file by its reader. `mesh` includes the files that Assimp reads. Readers refuse files of format `unknown`.
 enum class SceneFormat : std::uint8_t { npy, csv, json, mesh, unknown };
 
-/// Format of a file of pairs or collisions. `npy` is an array of pairs; the others are rows of text.
-enum class ResultFormat : std::uint8_t { npy, csv, jsonl };
+/// Format of a file of pairs or collisions. `npy` is an array of pairs; `csv` and `jsonl` are rows of text; `bcf` has topics of collisions.
+enum class ResultFormat : std::uint8_t { npy, csv, jsonl, bcf };
 
 /// Returns the format of a scene file. Returns `mesh` only if this build reads mesh files.
 /// Throws: what known_format() throws.
@@ -86,8 +86,10 @@ bool may_name_files(const std::string& path);
 /// Throws: Error{io_failed}.
 std::string version_of(const std::string& path);
 
-/// Throws: Error{usage} for an ending that is not .npy, .csv or .jsonl.
+/// Throws: Error{usage} for an ending that is not .npy, .csv, .jsonl, .bcf or .bcfzip.
 ResultFormat result_format(const std::string& path);
+/// Returns the format of a file of pairs. Throws: as result_format(); Error{usage} for a format that holds only collisions.
+ResultFormat pairs_format(const std::string& path);
 
 /// Returns whether the result format of `path` is an array. An empty path means standard output, which gets rows of text.
 /// Throws: what result_format() throws.

@@ -171,6 +171,10 @@ std::string shown_text(std::string_view text) {
 }
 
 std::string json_string(std::string_view text) {
+    // Most names are plain ASCII, and results have millions of them.
+    const bool plain = std::all_of(text.begin(), text.end(),
+                                   [](char c) { return (c & 0x80) == 0 && c >= ' ' && c != '"' && c != '\\'; });
+    if (plain) return '"' + std::string(text) + '"';
     return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

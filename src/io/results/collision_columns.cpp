@@ -48,6 +48,10 @@ CollisionRecord record_of(const CollisionRows& rows, std::size_t i, const Collis
     CollisionRecord row{recorded(pair.a, form.names.a, form.files), recorded(pair.b, form.names.b, form.files)};
     row.key = collision_key(pair, form.names);
     if (!rows.changes.empty()) row.change = rows.changes[i];
+    if (!rows.statuses.empty()) {
+        row.status = rows.statuses[i].status;
+        row.comment = rows.statuses[i].comment;
+    }
     if (!rows.findings.empty()) add_finding(row, rows.findings[i], form);
     return row;
 }

@@ -40,6 +40,8 @@ struct CollisionRecord {
     RecordedObject a, b;
     std::string key = {};  ///< collision_key(); empty if it is unknown
     std::optional<Change> change = {};
+    std::optional<Status> status = {};
+    std::string_view comment = {};
     std::optional<CollisionClass> collision_class = {};
     std::optional<double> time = {}, distance = {};
     std::optional<NearestPoints> nearest = {};
@@ -84,6 +86,8 @@ void for_each_json_column(Row& row, const Visit& visit) {
     visit_object(columns_of_a, row.a);
     visit_object(columns_of_b, row.b);
     visit("key", row.key);
+    visit("status", row.status);
+    visit("comment", row.comment);
     visit("change", row.change);
     visit("class", row.collision_class);
     visit("time", row.time);
@@ -141,6 +145,8 @@ void for_each_csv_column(Row& row, const Visit& visit) {
     visit(columns_of_a.file, row.a.file);
     visit(columns_of_b.file, row.b.file);
     visit("key", row.key);
+    visit("status", row.status);
+    visit("comment", row.comment);
     visit("change", row.change);
 }
 
@@ -171,6 +177,8 @@ template <>
 inline constexpr std::size_t words_of<ThicknessKind> = 4;
 template <>
 inline constexpr std::size_t words_of<Change> = 3;
+template <>
+inline constexpr std::size_t words_of<Status> = status_values;
 
 /// Returns the value whose word (word_of()) is `text`. Throws: Error{bad_input} that begins with `place` and names all words.
 template <typename Word>

@@ -13,6 +13,8 @@
 
 namespace octopair::io {
 
+struct ObjectKeys;
+
 /// An input file of a set. Borrowed.
 struct ObjectSource {
     std::string_view path;
@@ -27,8 +29,7 @@ struct ObjectNames {
     std::span<const std::uint32_t> owners = {};  ///< for triangles, the owner of each, ascending; otherwise empty
     const ObjectDetails* details = nullptr;      ///< null, empty, or a row per name
     std::span<const ObjectSource> sources = {};  ///< the input files, in the order of their objects; or empty
-    std::span<const std::string> keys =
-        {};  ///< empty, or one key per object; for triangles, one per owner (collision_key.hpp)
+    const ObjectKeys* keys = nullptr;            ///< null: keys are unknown (collision_key.hpp)
 
     /// Returns the name of an object; empty if it has none.
     std::string_view of(std::uint32_t object) const {
@@ -59,20 +60,34 @@ struct CollisionNames {
 /// Change of a collision since an older result (baseline.hpp).
 enum class Change : std::uint8_t { begun, same, gone };
 
+/// What people have decided about a collision (statuses.hpp). `begun`: nothing so far.
+enum class Status : std::uint8_t { begun, active, reviewed, approved, resolved };
+
+/// Number of statuses, for arrays that a status indexes.
+inline constexpr std::size_t status_values = 5;
+
+/// Status and comment of a row. The comment is borrowed.
+struct RowStatus {
+    Status status = Status::begun;
+    std::string_view comment = {};
+};
+
 /// Selects the fields that the collisions of a result have.
 struct CollisionForm {
     CollisionNames names = {};
     bool features = false;  ///< depth and contacts are known
     bool times = false;     ///< the time of first contact is known
     bool changes = false;   ///< the result is compared with a baseline
+    bool statuses = false;  ///< the collisions have statuses
     bool files = false;     ///< the objects are of several input files
 };
 
 /// Consecutive rows of a result. Borrowed.
 struct CollisionRows {
     std::span<const Pair> pairs;
-    std::span<const Finding> findings = {};  ///< one per pair, or empty
-    std::span<const Change> changes = {};    ///< one per pair, or empty
+    std::span<const Finding> findings = {};    ///< one per pair, or empty
+    std::span<const Change> changes = {};      ///< one per pair, or empty
+    std::span<const RowStatus> statuses = {};  ///< one per pair, or empty
 };
 
 /// Returns the word for a class in result files, for example "penetrating".
@@ -95,6 +110,12 @@ constexpr std::string_view word_of(ThicknessKind kind) {
 constexpr std::string_view word_of(Change change) {
     constexpr std::string_view words[] = {"new", "same", "gone"};
     return words[std::size_t(change)];
+}
+
+constexpr std::string_view word_of(Status status) {
+    constexpr std::string_view words[] = {"new", "active", "reviewed", "approved", "resolved"};
+    static_assert(std::size(words) == status_values);
+    return words[std::size_t(status)];
 }
 
 /// Returns whether objects of this class meet. If they meet, depth and contacts are defined.

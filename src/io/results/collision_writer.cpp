@@ -43,6 +43,7 @@ class CollisionCsvWriter final : public CollisionWriter {
 public:
     CollisionCsvWriter(std::unique_ptr<OutputStream> out, const CollisionForm& form)
         : out_(std::move(out)), form_(form) {
+        if (!form_.statuses) form_.names.a.keys = form_.names.b.keys = nullptr;  // no column needs them
         std::string header;
         const CollisionRecord none;
         for_each_csv_column(none, [&](std::string_view name, const auto&) {
@@ -68,11 +69,11 @@ public:
     void finish() override { out_->commit(); }
 
 private:
-    /// Returns whether the file has a column. Details that no object has, files of a result with one input, keys, and changes without a
-    /// baseline get no column.
+    /// Returns whether the file has a column. Details that no object has, files of a result with one input, changes without a baseline, and
+    /// keys and comments without statuses get no column.
     bool is_shown(std::string_view name) const {
         if (name == "change") return form_.changes;
-        if (name == "key") return false;
+        if (name == "key" || name == "status" || name == "comment") return form_.statuses;
         if (name == columns_of_a.file || name == columns_of_b.file) return form_.files;
         for (const Detail detail : all_details) {
             const std::size_t i = std::size_t(detail);
@@ -109,6 +110,7 @@ std::unique_ptr<CollisionWriter> make_collision_file_writer(const std::string& p
         case ResultFormat::jsonl:
             return make_collision_jsonl_writer(std::make_unique<AtomicFile>(path), form);
         case ResultFormat::npy:
+        case ResultFormat::bcf:
             break;
     }
     throw Error(ErrorCode::usage,

@@ -152,20 +152,22 @@ std::unique_ptr<PairWriter> make_jsonl_writer(std::unique_ptr<OutputStream> out,
 }
 
 std::unique_ptr<PairWriter> make_file_writer(const std::string& path, bool moving, const PairNames& names) {
-    switch (result_format(path)) {
+    switch (pairs_format(path)) {
         case ResultFormat::npy:
             return make_npy_writer(path, moving);
         case ResultFormat::csv:
             return make_csv_writer(std::make_unique<AtomicFile>(path), moving);
         case ResultFormat::jsonl:
             return make_jsonl_writer(std::make_unique<AtomicFile>(path), moving, names);
+        case ResultFormat::bcf:
+            break;
     }
     throw Error(ErrorCode::usage, "unknown pair format");
 }
 
 ResultFormat event_format(const std::string& path) {
     const ResultFormat format = result_format(path);
-    if (format != ResultFormat::npy) return format;
+    if (format == ResultFormat::csv || format == ResultFormat::jsonl) return format;
     throw Error(ErrorCode::usage,
                 fmt::format("{}: events are rows of text; the name of their file must end in .csv or .jsonl", path));
 }

@@ -73,7 +73,7 @@ std::unique_ptr<PairWriter> make_npy_writer(const std::string& path, bool moving
 std::unique_ptr<PairWriter> make_csv_writer(std::unique_ptr<OutputStream> out, bool moving);
 std::unique_ptr<PairWriter> make_jsonl_writer(std::unique_ptr<OutputStream> out, bool moving, const PairNames& names);
 
-/// Returns the writer for the ending of `path`. Throws: what result_format() throws; Error{io_failed}.
+/// Returns the writer for the ending of `path`. Throws: what pairs_format() throws; Error{io_failed}.
 std::unique_ptr<PairWriter> make_file_writer(const std::string& path, bool moving, const PairNames& names);
 
 /// Change of a pair in a frame. In one frame, ends come before begins.
