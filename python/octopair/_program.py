@@ -122,11 +122,12 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
            objects: Optional[Literal["node", "triangle"]] = None, margin: Optional[float] = None, padding: Optional[PathLike] = None,
            adjacent: Optional[Literal["beyond_shared", "beyond-shared", "exclude", "include"]] = None,
            max_contacts: Optional[int] = None, tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None,
-           min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None, exclude: Optional[PathLike] = None,
-           same_parent: Optional[Literal["include", "exclude"]] = None, baseline: Optional[PathLike] = None,
-           statuses: Optional[PathLike] = None, report: Optional[PathLike] = None, up: Optional[Literal["y", "z"]] = None,
-           unit: Optional[str] = None, events: bool = False, index_type: Optional[Literal["uint32", "uint64"]] = None, order: Optional[Order] = None,
-           limit: Optional[int] = None, verify: bool = False, engine: Optional[str] = None, threads: Optional[int] = None, workers: Optional[int] = None,
+           min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None,
+           exclude: Optional[PathLike] = None, same_parent: Optional[Literal["include", "exclude"]] = None,
+           baseline: Optional[PathLike] = None, statuses: Optional[PathLike] = None, report: Optional[PathLike] = None,
+           up: Optional[Literal["y", "z"]] = None, unit: Optional[str] = None, events: bool = False,
+           index_type: Optional[Literal["uint32", "uint64"]] = None, order: Optional[Order] = None, limit: Optional[int] = None,
+           verify: bool = False, engine: Optional[str] = None, threads: Optional[int] = None, workers: Optional[int] = None,
            token_file: Optional[PathLike] = None, token_in_clear: bool = False, server_user: Optional[str] = None, tls: bool = False,
            tls_authority: Optional[PathLike] = None, tls_certificate: Optional[PathLike] = None, tls_key: Optional[PathLike] = None,
            patience: Optional[float] = None) -> Detection:
@@ -148,12 +149,14 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     margin, padding
         Largest gap at which a pair counts; file with the clearance of each object.
     adjacent, max_contacts, tolerance, duplicate_tolerance, min_depth, classes, weld
-        Options of the exact stages: :meth:`Pipeline.triangles`, :meth:`Pipeline.exact_features`, :meth:`Geometry.mesh`.
+        Options of the exact stages: :meth:`Pipeline.triangles`, :meth:`Pipeline.exact_features`, :meth:`Geometry.mesh`. `classes` is a
+        list with commas.
     exclude, same_parent
         File with rules on names and relations, or relations of IFC elements such as ``"fills,assembly"``; whether pairs of objects with
         the same parent are left out.
     baseline, statuses, report, up, unit
-        File with an older result; file with what people decided, which is read and written; page about the collisions, its upward axis, and its unit.
+        File with an older result; file with what people decided, which is read and written; page about the collisions, its upward
+        axis, and its unit.
     events : bool
         True: only what began and ended, of a moving scene.
     index_type, order, limit, verify
