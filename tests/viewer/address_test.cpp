@@ -6,7 +6,7 @@
 #include <random>
 
 #include "viewer/server/access.hpp"
-#include "viewer/server/answer.hpp"
+#include "viewer/scene/answer.hpp"
 
 namespace octopair::test {
 

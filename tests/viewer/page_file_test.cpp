@@ -8,7 +8,7 @@
 #include "octopair/error.hpp"
 #include "viewer/fake_finder.hpp"
 #include "viewer/scene/page_file.hpp"
-#include "viewer/server/page.hpp"
+#include "viewer/scene/page.hpp"
 
 namespace octopair::test {
 

@@ -9,7 +9,6 @@ import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
 import {type LinkState, readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
-import {startWithin, tellReport} from './within_report.ts';
 import {hideProgress, say, showBanner, showFailure, showProgress} from './panel.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
@@ -110,7 +109,6 @@ class Page {
     await shown.catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
     await firstPicture(app);
     const rest = this.readRest(app, link);
-    if (this.source.exported) startWithin(app);
     // The picture stays if the rest cannot be read.
     return rest.catch((error: unknown) => app.fail(error));
   }
@@ -313,5 +311,4 @@ function offerHooks(app: App): void {
 new Page().start().catch(error => {
   // A message of the server is more exact.
   if (!document.documentElement.dataset.failed) showFailure(messageOf(error));
-  tellReport('failed');
 });

@@ -34,12 +34,13 @@ struct PipelineRequest {
 /// Returns the stages of this build, by their names for --stage.
 std::vector<std::string_view> stage_names();
 
-/// Add --stage and --up. `description` is the help text.
+/// Add --stage, --up and --unit. `description` is the help text.
 void add_stage_option(Command& command, PipelineRequest& request, const std::string& description);
 void add_up_option(Command& command, PipelineRequest& request, const std::string& description);
+void add_unit_option(Command& command, PipelineRequest& request, const std::string& description);
 
-/// Adds --stage, --exclude and --same-parent.
-void add_stage_options(Command& command, PipelineRequest& request);
+/// Adds --stage, --exclude and --same-parent. `description` is the help text of --stage.
+void add_stage_options(Command& command, PipelineRequest& request, const std::string& description);
 
 /// Adds the options of the exact stages: --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth and --weld.
 void add_exact_options(Command& command, PipelineRequest& request);
@@ -61,7 +62,9 @@ double tolerance_of(const DetectRequest& request, const SetPair& sets);
 /// Returns whether the request needs filters.
 bool has_filters(const DetectRequest& request);
 
-/// Throws: Error{usage} for options that do not fit together.
+/// Throws: Error{usage} for options of the search that do not fit together.
+void check_search_options(const DetectRequest& request);
+/// Throws: as check_search_options(), also for --baseline, --report, --up and --unit.
 void check_pipeline_options(const DetectRequest& request);
 
 }  // namespace octopair::cli

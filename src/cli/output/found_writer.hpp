@@ -42,7 +42,6 @@ std::unique_ptr<FoundWriter> make_found_writer(const DetectRequest& request, con
 
 /// Makes the HTML report of --report (report_page.cpp). The report has no measured times, so equal results give equal bytes. Borrows the
 /// request and the sets.
-std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
-                                                 const io::CollisionForm& form);
+std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets);
 
 }  // namespace octopair::cli

@@ -14,7 +14,7 @@
 
 #include "octopair/error.hpp"
 #include "viewer/server/page_server.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::cli {
 

@@ -20,7 +20,7 @@
 #include "octopair/version.hpp"
 #include "viewer/live/live_source.hpp"
 #include "viewer/server/page_server.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::cli {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "octopair/error.hpp"
-#include "viewer/server/page.hpp"
+#include "viewer/scene/page.hpp"
 
 namespace octopair::viewer {
 
@@ -42,20 +42,20 @@ private:
 
 }  // namespace
 
-std::uint64_t write_page(FrameSource& source, const std::function<void(std::string_view)>& write, std::uint64_t most,
-                         const ProgressSink& progress) {
-    const std::string html = page();
+std::uint64_t write_page(FrameSource& source, const std::function<void(std::string_view)>& write,
+                         const PageOptions& options, const ProgressSink& progress) {
+    const std::uint64_t most = options.max_bytes;
     constexpr std::string_view marker = "<!-- data -->";
-    const std::size_t place = html.find(marker);
+    const std::size_t place = page.find(marker);
     const std::uint64_t frames = source.frames();
-    source.prepare_export({frames, {}});
+    source.prepare_export({frames, {}, options.octants});
     const std::vector<std::string> of_scene = source.addresses(), of_first = source.addresses_of(0);
     Encoder encoder(source, 2 * of_scene.size() + frames * of_first.size(), progress);
     // The data of source.addresses() hold the number of exported frames, which is known only after the frames are added. So encode the
     // frames first.
     std::string data = encoder.elements(of_first);
     std::uint64_t written = 1;
-    std::uint64_t fixed = html.size() + encoder.elements(of_scene).size();
+    const std::uint64_t fixed = page.size() + encoder.elements(of_scene).size();
     const auto refuse_large = [&] {
         throw Error(ErrorCode::resource_limit, "the page would exceed " + std::to_string(most >> 20) +
                                                    " MiB; export fewer objects, or look at the scene without --export");
@@ -66,16 +66,16 @@ std::uint64_t write_page(FrameSource& source, const std::function<void(std::stri
         if (fixed + data.size() + next.size() > most) break;
         data += next;
     }
-    FrameSource::Export how{written, {}};
+    FrameSource::Export how{written, {}, options.octants};
     if (written < frames) {
         how.notices.push_back("Only the first " + grouped_number(written) + " of " + grouped_number(frames) +
                               " frames are in this file.");
     }
     source.prepare_export(std::move(how));
-    write(std::string_view(html).substr(0, place));
+    write(page.substr(0, place));
     write(encoder.elements(of_scene));
     write(data);
-    write(std::string_view(html).substr(place + marker.size()));
+    write(page.substr(place + marker.size()));
     return written;
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "viewer/server/access.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 

@@ -21,7 +21,7 @@
 
 #include "octopair/error.hpp"
 #include "viewer/server/connection.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 
