@@ -2,7 +2,7 @@
 // Start here to change the page of the viewer.
 import * as THREE from 'three';
 import {App} from './app.ts';
-import {commands, copyLink, openHelp} from './commands.ts';
+import {commands, openHelp} from './commands.ts';
 import {byId, messageOf} from './dom.ts';
 import {Keyboard} from './keyboard.ts';
 import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
@@ -10,6 +10,7 @@ import {type LinkState, readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
 import {hideProgress, say, showBanner, showFailure, showProgress} from './panel.ts';
+import {startPrinting} from './print.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
@@ -95,7 +96,7 @@ class Page {
     const link = readLink(settings);
     const first = Math.min(link.frame ?? 0, Math.max(view.frames - 1, 0));
     // The data come while the parts of the page start.
-    const rows = early(model.load(this.source));
+    const rows = early(Promise.all([model.load(this.source), this.source.exported ? model.loadRows(this.source) : null]));
     const frame = view.kind === 'live' ? null : early(model.readFrame(this.source, first));
     const worst = frame && link.empty ? early(this.source.collisions(first, firstQuery)) : null;
     this.startTimeline(view);
@@ -117,7 +118,8 @@ class Page {
     app.stage.setTheme(app.palette());
     new Keyboard(commands(app));
     byId('zoom-all').addEventListener('click', () => app.zoomAll());
-    byId('copy-link').addEventListener('click', () => void copyLink(app));
+    byId('copy-link').addEventListener('click', () => void app.copyLink());
+    startPrinting(app);
     app.stage.resize();
     if (!keepCamera) app.zoomAll();
     offerHooks(app);
@@ -147,7 +149,7 @@ class Page {
     app.startOptions();
     const live = view.kind === 'live';
     await Promise.all([app.followFrame(!app.table.rows.length), live || !this.timeline ? null : this.readTimeline(),
-      view.has.shapes ? this.readShapes(app) : null, app.model.loadRows(this.source)]);
+      view.has.shapes ? this.readShapes(app) : null, app.model.loadRows(this.source).then(() => app.namesArrived())]);
     app.recolour();
     if (link.selected.length) await (link.camera === null ? app.openAll(link.selected) : app.selection.select(link.selected));
     if (live && link.empty) app.selectWorstSoon();
