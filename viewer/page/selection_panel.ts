@@ -72,7 +72,7 @@ export class SelectionPanel {
     const tools = make('div', '', 'pair-tools');
     tools.append(button('Only these two', () => this.actions.onlySelection(), 'Only these two, or all objects (key J)'));
     if (collides) tools.append(button('Section', () => this.actions.section(), 'Section through the contact (key X)'));
-    tools.append(button('Copy link', () => this.actions.copyLink(), 'Copy a link to this collision'));
+    tools.append(button('Copy link', () => this.actions.copyLink(), 'Copy link to this collision'));
     return tools;
   }
 
@@ -174,7 +174,8 @@ export class SelectionPanel {
     const list = make('ul', '', 'chips');
     for (const partner of info.partners.slice(0, listed)) {
       const item = make('li');
-      const title = this.model.labelOf(partner);
+      const label = this.model.labelOf(partner);
+      const title = label.startsWith('object ') ? String(partner) : label;
       item.append(button(title, () => this.actions.select([partner]), `Select object ${title}`));
       list.append(item);
     }
