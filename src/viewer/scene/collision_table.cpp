@@ -93,9 +93,10 @@ public:
 
     Answer rows(const RowRequest& request) {
         std::vector<std::uint32_t> kept = select(request);
-        const std::size_t total = kept.size();
-        const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, total));
-        const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, total - from));
+        // A frame may list only some of its pairs.
+        const std::uint64_t total = kept.size() == frame_.data.pairs.size() ? frame_.data.pair_count : kept.size();
+        const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, kept.size()));
+        const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, kept.size() - from));
         sort(kept, request.sort, from + count);
         // A table may have 200,000 rows, so each becomes text on its own.
         std::string text = "{\"total\":" + std::to_string(total) + ",\"rows\":[";
