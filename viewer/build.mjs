@@ -1,6 +1,7 @@
 // Bundles the page into one HTML file: node build.mjs OUTPUT. The same sources give the same bytes.
+// With --check, writes nothing, but fails if OUTPUT is not this page.
 import {createHash} from 'node:crypto';
-import {readdirSync, readFileSync, writeFileSync} from 'node:fs';
+import {existsSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {gzipSync} from 'node:zlib';
@@ -47,6 +48,12 @@ if (page.split('<!-- data -->').length !== 2) throw new Error('the page must hav
 const bytes = Buffer.from(page, 'utf8');
 const gzip = gzipSync(bytes, {level: 9}).length;
 if (bytes.length > limits.bytes || gzip > limits.gzip) throw new Error(`the page is too large: ${bytes.length} bytes, ${gzip} with gzip`);
-if (!process.argv[2]) throw new Error('usage: node build.mjs OUTPUT');
-writeFileSync(resolve(process.argv[2]), bytes);
-console.log(`${process.argv[2]}: ${bytes.length} bytes, ${gzip} with gzip`);
+const [output, check] = process.argv.slice(2);
+if (!output || (check && check !== '--check')) throw new Error('usage: node build.mjs OUTPUT [--check]');
+if (!check) {
+  writeFileSync(resolve(output), bytes);
+  console.log(`${output}: ${bytes.length} bytes, ${gzip} with gzip`);
+} else if (!existsSync(output) || !readFileSync(output).equals(bytes)) {
+  console.error(`${output}: is not the page that the sources in viewer/ give; renew it: cmake --build build/release --target octopair_renew_page`);
+  process.exit(1);
+}

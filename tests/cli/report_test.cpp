@@ -47,7 +47,8 @@ json row_of(const json& rows, std::uint64_t a, std::uint64_t b) {
 }
 
 TEST_F(Report, HasTheRowsOfTheResult) {
-    write_scene("s.json", {ball("car/wheel", 0), ball("car/" + hostile, 1.5), ball("alone", 50), ball("inner", 50.1, 0.2), ball("", 53)});
+    write_scene("s.json", {ball("car/wheel", 0), ball("car/" + hostile, 1.5), ball("alone", 50),
+                           ball("inner", 50.1, 0.2), ball("", 53)});
     const auto data = report("s.json --stage features --margin 1.5 --unit mm --up y");
     const json view = json::parse(data.at("view.json")), frame = json::parse(data.at("frame/0.json"));
     const json table = json::parse(data.at("collisions/0.json"));

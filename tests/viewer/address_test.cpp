@@ -5,9 +5,9 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <random>
 
-#include "viewer/server/access.hpp"
 #include "support/page_data.hpp"
 #include "viewer/scene/answer.hpp"
+#include "viewer/server/access.hpp"
 
 namespace octopair::test {
 

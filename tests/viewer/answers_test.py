@@ -360,7 +360,7 @@ class Export(InFolder):
         with open(self.path('rules.json'), 'w', encoding='utf-8') as file:
             json.dump({'exclude': [{'a': 's0', 'b': '*'}]}, file)
         seen = set()
-        for options in ([], ['--against', self.path('t.json')], ['--margin', '0.5'], ['--tolerance', '0.6'], ['--min-depth', '0.6'],
+        for options in ([], ['--against', self.path('t.json')], ['--margin', '0.5'], ['--tolerance', '0.6'], ['--min-depth', '0.6', '--margin', '0.5'],
                         ['--exclude', self.path('rules.json')], ['--against', self.path('t.json'), '--exclude', self.path('rules.json')]):
             run = [self.path('s.json'), *options, '--quiet']
             self.run_program('detect', *run, '--stage', 'features', '-o', self.path('r.jsonl'))

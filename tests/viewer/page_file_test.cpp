@@ -4,8 +4,8 @@
 #include "octopair/error.hpp"
 #include "support/page_data.hpp"
 #include "viewer/fake_finder.hpp"
-#include "viewer/scene/page_file.hpp"
 #include "viewer/scene/page.hpp"
+#include "viewer/scene/page_file.hpp"
 
 namespace octopair::test {
 
@@ -13,8 +13,7 @@ namespace {
 
 std::string page_of(FrameSource& source, std::uint64_t most = viewer::max_page_bytes) {
     std::string page;
-    write_page(
-        source, [&](std::string_view text) { page += text; }, {most});
+    write_page(source, [&](std::string_view text) { page += text; }, {most});
     return page;
 }
 
@@ -117,9 +116,7 @@ TEST(PageFile, RefusesAFirstFrameBeyondTheLimit) {
     FrameSource source(contents_of(60, true), finder);
     source.load({});
     bool wrote = false;
-    EXPECT_THROW(write_page(
-                     source, [&](std::string_view) { wrote = true; }, {1000}),
-                 Error);
+    EXPECT_THROW(write_page(source, [&](std::string_view) { wrote = true; }, {1000}), Error);
     EXPECT_FALSE(wrote);
 }
 

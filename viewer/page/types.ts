@@ -74,18 +74,15 @@ export interface Contact {
   depth?: number;
 }
 
+// Texts about the objects of a collision that is gone.
+type GoneTexts = {[key in `${'label' | 'type' | 'id'}_${'a' | 'b'}`]?: string};
+
 // A row of the table. A collision that is gone has the objects -1, and only texts about them.
-export interface Collision {
+export interface Collision extends GoneTexts {
   a: number;
   b: number;
   name_a?: string;
   name_b?: string;
-  label_a?: string;
-  label_b?: string;
-  type_a?: string;
-  type_b?: string;
-  id_a?: string;
-  id_b?: string;
   class?: string;
   depth?: number;
   // "least", or "at_least" if the depth is a lower bound; then perhaps with an upper bound.

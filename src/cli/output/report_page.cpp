@@ -156,7 +156,8 @@ private:
         if (request_.pipeline.baseline.empty()) return;
         for (const io::Change change : {io::Change::begun, io::Change::same}) {
             const std::string_view word = io::word_of(change);
-            data.facts.push_back({std::string(word), double(std::count(data.changes.begin(), data.changes.end(), word))});
+            data.facts.push_back(
+                {std::string(word), double(std::count(data.changes.begin(), data.changes.end(), word))});
         }
         data.facts.push_back({std::string(io::word_of(io::Change::gone)), double(gone_total_)});
     }
@@ -172,7 +173,8 @@ private:
         const std::size_t notices = contents.notices.size();
         std::string html = written(contents, data);
         if (html.empty() && drop_free_shapes(contents, data)) {
-            contents.notices.emplace_back("Objects that do not collide are drawn as boxes, because the shapes of all are too large.");
+            contents.notices.emplace_back(
+                "Objects that do not collide are drawn as boxes, because the shapes of all are too large.");
             html = written(contents, data);
         }
         if (!html.empty()) return html;

@@ -170,7 +170,8 @@ void read(Inputs& inputs, ProgressLine& progress) {
     // Pages read boxes later, when the mapped file may have changed.
     for (InputSet* set : {&inputs.first, &inputs.second}) set->scene.copy_mapped();
 #ifdef OCTOPAIR_WITH_PIPELINE
-    make_shaped(inputs.first, inputs.second, {local_threads(request.engine), request.pipeline.weld.value_or(0)}, inputs.stop);
+    make_shaped(inputs.first, inputs.second, {local_threads(request.engine), request.pipeline.weld.value_or(0)},
+                inputs.stop);
 #endif
     inputs.frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request);
     inputs.padding.emplace(request, SetSizes{a.objects, b.objects}, inputs.stop);

@@ -19,8 +19,8 @@
 #include "io/formats/format_choice.hpp"
 #include "io/results/result_file.hpp"
 #include "viewer/scene/page_file.hpp"
-#include "viewer/server/page_server.hpp"
 #include "viewer/scene/source.hpp"
+#include "viewer/server/page_server.hpp"
 
 namespace octopair::cli {
 
@@ -240,9 +240,8 @@ void add_view(Command& program, Action& action) {
     Command command = program.add_subcommand("view", "show a scene, a result, a recording or a server in a browser");
     const auto request = std::make_shared<ViewRequest>();
     add_view_options(command, *request);
-    command.set_examples(
-        {"octopair view parts.glb", "octopair view boxes.npy pairs.npy", "octopair view walls.ifc --against pipes.ifc",
-         "octopair view parts.glb --export page.html"});
+    command.set_examples({"octopair view parts.glb", "octopair view boxes.npy pairs.npy",
+                          "octopair view walls.ifc --against pipes.ifc", "octopair view parts.glb --export page.html"});
     command.callback([request, command, &action] {
         request->detect.given = command.given_options();
         check_view_options(*request);

@@ -266,8 +266,8 @@ Answer gone_rows(std::span<const GoneCollision> gone) {
         Json row = Json::object();
         for (std::size_t k = 0; k < 2; ++k) {
             const auto& [name, label, type, id] = collision.objects[k];
-            for (const auto& [key, text] :
-                 {std::pair("name", &name), std::pair("label", &label), std::pair("type", &type), std::pair("id", &id)}) {
+            for (const auto& [key, text] : {std::pair("name", &name), std::pair("label", &label),
+                                            std::pair("type", &type), std::pair("id", &id)}) {
                 if (!text->empty()) row[std::string(key) + (k == 0 ? "_a" : "_b")] = *text;
             }
         }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "octopair/octants.hpp"
+#include "viewer/scene/answer.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/scene/shown_objects.hpp"
-#include "viewer/scene/answer.hpp"
 
 namespace octopair::viewer {
 

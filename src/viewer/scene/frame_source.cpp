@@ -269,20 +269,20 @@ Answer FrameSource::view_answer() const {
     Json files = Json::array();
     for (const ShownFile& file : contents_.files) files.push_back({{"name", file.name}, {"first", file.first}});
     Json view = {{"version", OCTOPAIR_VERSION},
-                        {"title", contents_.title},
-                        {"kind", "scene"},
-                        {"objects", contents_.objects},
-                        {"shown", shown_.size()},
-                        {"frames", export_ ? export_->frames : frames()},
-                        {"origin", json_of(origin_)},
-                        {"bounds", json_of(bounds_)},
-                        {"up", contents_.up},
-                        {"unit", contents_.unit},
-                        {"margin", contents_.margin},
-                        {"files", std::move(files)},
-                        {"has", std::move(has)},
-                        {"notices", std::move(notices)},
-                        {"summary", std::move(summary)}};
+                 {"title", contents_.title},
+                 {"kind", "scene"},
+                 {"objects", contents_.objects},
+                 {"shown", shown_.size()},
+                 {"frames", export_ ? export_->frames : frames()},
+                 {"origin", json_of(origin_)},
+                 {"bounds", json_of(bounds_)},
+                 {"up", contents_.up},
+                 {"unit", contents_.unit},
+                 {"margin", contents_.margin},
+                 {"files", std::move(files)},
+                 {"has", std::move(has)},
+                 {"notices", std::move(notices)},
+                 {"summary", std::move(summary)}};
     if (contents_.second_set) view["second_set"] = *contents_.second_set;
     return json_answer(view);
 }
@@ -421,7 +421,8 @@ std::vector<std::string> FrameSource::addresses() const {
 std::vector<std::string> FrameSource::addresses_of(std::uint64_t number) {
     const std::string f = std::to_string(number);
     std::vector<std::string> all;
-    for (const char* const what : {"frame/#.json", "frame/#.f32", "partners/#.u32", "pairs/#.u32", "collisions/#.json"}) {
+    for (const char* const what :
+         {"frame/#.json", "frame/#.f32", "partners/#.u32", "pairs/#.u32", "collisions/#.json"}) {
         all.push_back(what);
     }
     if (contents_.moving) all.insert(all.end(), {"began/#.u32", "ended/#.u32"});
@@ -430,8 +431,10 @@ std::vector<std::string> FrameSource::addresses_of(std::uint64_t number) {
         all.insert(all.end(), {"levels/#.u8", "octants/#.json"});
         const std::lock_guard lock(frames_mutex_);
         unsigned deepest = 0;
-        for (const OctantSummary& octant : octants(*frame(number)).all()) deepest = std::max(deepest, octant.code.level());
-        for (unsigned level = 0; level <= deepest; ++level) all.push_back("octants/#/" + std::to_string(level) + ".bin");
+        for (const OctantSummary& octant : octants(*frame(number)).all())
+            deepest = std::max(deepest, octant.code.level());
+        for (unsigned level = 0; level <= deepest; ++level)
+            all.push_back("octants/#/" + std::to_string(level) + ".bin");
     }
     for (std::string& address : all) address.replace(address.find('#'), 1, f);
     return all;

@@ -16,7 +16,7 @@ std::string element(FrameSource& source, const std::string& address) {
     const auto answer = parsed ? source.get(*parsed) : std::nullopt;
     if (!answer) return {};
     return "<script type=\"application/octet-stream\" data-address=\"" + address + "\">" +
-           base64(gzip(answer->body, 9)) + "</script>\n";
+           base64(gzip(answer->body, 6)) + "</script>\n";
 }
 
 /// Encodes the data of addresses. Reports the progress for an expected number of addresses.

@@ -78,8 +78,8 @@ struct SceneContents {
     double margin = 0;
     std::vector<std::string> names;
     std::vector<std::uint32_t> groups;
-    ObjectTexts details;             ///< for example types and materials
-    std::vector<ShownFile> files;    ///< in the order of their objects, or empty
+    ObjectTexts details;           ///< for example types and materials
+    std::vector<ShownFile> files;  ///< in the order of their objects, or empty
     /// Number of the first object of the second set, if each pair has one object of each set. Results number both sets from 0.
     std::optional<std::uint64_t> second_set;
     std::vector<GoneCollision> gone;  ///< only exported pages have them
@@ -100,11 +100,12 @@ struct FrameData {
     std::shared_ptr<const void> keep;  ///< owner of the memory of `boxes`, or null
     std::vector<Pair> pairs;           ///< ascending; the first ones, if `pair_count` is larger
     std::vector<Finding> findings;     ///< one per pair, or empty
-    std::vector<std::string_view> changes;  ///< one word per pair since an older result, such as "new", or empty; static texts
+    std::vector<std::string_view>
+        changes;  ///< one word per pair since an older result, such as "new", or empty; static texts
     std::uint64_t pair_count = 0;
     std::vector<std::uint64_t> class_counts;  ///< number of pairs of each class; empty: those of `findings`
-    bool more_pairs = false;  ///< true if there are more than `pair_count`
-    std::vector<Fact> facts;  ///< for example seconds by step
+    bool more_pairs = false;                  ///< true if there are more than `pair_count`
+    std::vector<Fact> facts;                  ///< for example seconds by step
 
     bool has(std::size_t object) const { return exists.empty() || exists[object] != 0; }
 };
