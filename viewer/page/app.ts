@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import {legend, type LegendEntry, type Look, opacityOf, paint, type Palette, paletteOf} from './colours.ts';
 import {toneOf} from './collision.ts';
-import {isAbort, messageOf} from './dom.ts';
+import {counted, isAbort, messageOf} from './dom.ts';
 import {contactColour} from './contact_layer.ts';
 import {glassOpacity, Pass, passOf} from './draw_pass.ts';
 import {bestView, type Focus, focusOf, sectionOf} from './focus.ts';
@@ -574,7 +574,7 @@ export class App {
     const withLines = Math.min(pairLimit, model.frame.pairs.length / 2);
     const {pairs} = model.frame.info;
     if (lines === 'all' && withLines < pairs) texts.push(`The first ${number(withLines)} of ${number(pairs)} pairs have lines.`);
-    if (stage.shapes.leftOut > 0) texts.push(`${number(stage.shapes.leftOut)} shapes are left out.`);
+    if (stage.shapes.leftOut > 0) texts.push(`${counted(stage.shapes.leftOut, 'shape is', 'shapes are')} left out.`);
     showNotices(texts);
   }
 }

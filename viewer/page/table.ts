@@ -305,6 +305,7 @@ export class Table {
     const line = make('tr', '', group ? 'member' : '');
     line.tabIndex = 0;
     line.dataset.pair = `${row!.a},${row!.b}`;
+    line.setAttribute('aria-level', group ? '2' : '1');
     line.append(this.nameCell(row!, 'a'), this.nameCell(row!, 'b'));
     for (const column of columns) {
       const cell = make('td', column.text(row!), column.style);
@@ -321,6 +322,7 @@ export class Table {
     const line = make('tr', '', 'group');
     const shown = this.open.get(group.key) ?? 0;
     line.tabIndex = 0;
+    line.setAttribute('aria-level', '1');
     line.setAttribute('aria-expanded', String(shown > 0));
     const cell = make('td');
     cell.colSpan = columns;

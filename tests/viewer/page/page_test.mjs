@@ -196,6 +196,130 @@ test('the table sorts, filters and selects', 'static', 1000, async ({page, scene
     [...document.querySelectorAll('#rows tr')].every(row => row.textContent.includes('plate 1')));
 });
 
+// The pairs of a scene that pass, the worst first.
+function worstPairs(scene, passes) {
+  const {rows} = scene.collisions(0, new URLSearchParams({sort: 'worst'}));
+  return rows.filter(row => passes(row, scene.detailsOf(row.a), scene.detailsOf(row.b))).map(({a, b}) => [a, b]);
+}
+
+async function expectPairs(page, pairs) {
+  await waitForText(page, '#table-totals', pairs.length ? new RegExp(`of ${pairs.length.toLocaleString('en-US')} collisions?$`) : /^No collisions$/);
+  assert.deepEqual(await tablePairs(page), pairs.slice(0, 100));
+}
+
+test('classes, words, details and depths filter the list', 'static', 600, async ({page, scene}) => {
+  await complete(page);
+  const counts = scene.classCounts(0);
+  assert.deepEqual(await page.locator('#kinds button').allInnerTexts(), [`${counts.penetrating} penetrating`, `${counts.touching} touching`]);
+  const kind = word => page.locator('#kinds button', {hasText: word});
+  await kind('touching').click();
+  await expectPairs(page, worstPairs(scene, row => row.class === 'touching'));
+  assert.equal(await kind('touching').getAttribute('aria-pressed'), 'true');
+  await page.click('#filters summary');
+  await page.selectOption('#filter-type', 'rib');
+  await expectPairs(page, worstPairs(scene, (row, a, b) => row.class === 'touching' && (a.type === 'rib' || b.type === 'rib')));
+  await kind('touching').click();
+  await page.selectOption('#filter-level', 'deck 1');
+  await page.fill('#depth-from', '0.3');
+  const all = (row, a, b) => row.depth >= 0.3 && [a, b].some(object => object.type === 'rib') && [a, b].some(object => object.level === 'deck 1');
+  await expectPairs(page, worstPairs(scene, all));
+  // Each word is part of a text about one of the two objects.
+  await page.fill('#filter', 'BOLT plate');
+  await expectPairs(page, worstPairs(scene, (row, a, b) => all(row, a, b) && [a, b].some(object => object.type === 'bolt')));
+  await page.fill('#depth-to', '0.2');
+  await waitForText(page, '#no-rows', /^No collision passes the filters/);
+  await page.click('#clear-filters');
+  await expectPairs(page, worstPairs(scene, () => true));
+  assert.deepEqual(await accessibility(page), []);
+});
+
+test('groups gather the list, and keys move in it', 'static', 600, async ({page, scene}) => {
+  await complete(page);
+  await page.selectOption('#group', 'type');
+  await waitForText(page, '#table-totals', /^1 to 6 of 6 groups, /);
+  const groups = new Map();
+  for (const [a, b] of worstPairs(scene, () => true)) {
+    const title = [scene.detailsOf(a).type, scene.detailsOf(b).type].sort().join(' × ');
+    groups.set(title, [...groups.get(title) ?? [], [a, b]]);
+  }
+  assert.deepEqual(await page.locator('#rows strong').allInnerTexts(), [...groups.keys()]);
+  assert.deepEqual(await tablePairs(page), []);
+  const [first] = groups.values();
+  await page.locator('#rows tr').first().focus();
+  await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => document.querySelectorAll('#rows tr[data-pair]').length > 0);
+  assert.deepEqual(await tablePairs(page), first.slice(0, 100));
+  await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('Enter');
+  await waitForData(page, 'selected', first[0].join(','));
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowLeft');
+  await page.waitForFunction(() => document.querySelectorAll('#rows tr[data-pair]').length === 0);
+  await page.selectOption('#group', 'object');
+  await waitForText(page, '#table-totals', / groups, /);
+  const objects = new Set(scene.frame(0).pairs.flat());
+  await waitForText(page, '#table-totals', new RegExp(`of ${objects.size.toLocaleString('en-US')} groups`));
+  assert.deepEqual(await accessibility(page), []);
+});
+
+test('rows have labels, and dense rows one line', 'static', 12, async ({page}) => {
+  await complete(page);
+  const [[a]] = await tablePairs(page);
+  assert.equal(await page.locator('#rows .label').first().innerText(), a === 1 ? '<img src=x onerror=alert(1)>' : `plate ${a}`);
+  assert.match(await page.locator('#rows small').first().innerText(), /^(plate|rib|bolt) · deck [01]$/);
+  const height = () => page.locator('#rows tr').first().evaluate(row => row.offsetHeight);
+  const roomy = await height();
+  await page.check('#dense');
+  assert.ok(await height() < 0.7 * roomy);
+  assert.match(await text(page, '#head'), /depth \(m\)/);
+});
+
+test('a scale has a round length', 'static', 40, async ({page}) => {
+  await complete(page);
+  for (const key of ['+', '-', '-', '-']) {
+    await page.keyboard.press(key);
+    await pictures(page, 2);
+    const [, length] = /^([\d.]+) m$/.exec(await text(page, '#scale'));
+    assert.match(String(Number(length).toExponential()), /^[125]e/);
+    const width = await page.locator('#scale span').evaluate(bar => bar.getBoundingClientRect().width);
+    // Two points at the distance of what the camera looks at, across its direction.
+    const [x, y, z, , yaw] = (await page.evaluate(() => window.octopairView.camera())).split('_').map(Number);
+    const at = along => project(page, [1000 + x, 2000 + y, 3000 + z].map((value, k) => value + along * [-Math.sin(yaw), Math.cos(yaw), 0][k]));
+    const [p, q] = [await at(-0.5 * length), await at(0.5 * length)];
+    assert.ok(Math.abs(Math.hypot(p.x - q.x, p.y - q.y) - width) < 0.25 * width + 3, `${Math.hypot(p.x - q.x, p.y - q.y)} for ${width}`);
+  }
+});
+
+test('the page on paper has the picture', 'static', 40, async ({page}) => {
+  await complete(page);
+  await page.emulateMedia({media: 'print'});
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+  const {colours, wide} = await page.evaluate(async () => {
+    const picture = document.querySelector('.printed');
+    await picture.decode();
+    const canvas = new OffscreenCanvas(picture.naturalWidth, picture.naturalHeight);
+    const context = canvas.getContext('2d');
+    context.drawImage(picture, 0, 0);
+    return {colours: new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size, wide: picture.offsetWidth};
+  });
+  assert.ok(colours > 100 && wide > 300, `${colours} colours, ${wide} pixels wide`);
+  assert.equal(await data(page, 'theme'), 'light');
+  assert.ok(await page.locator('#rows tr').first().isVisible());
+  await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
+  assert.equal(await page.locator('.printed').count(), 0);
+  assert.equal(await data(page, 'theme'), 'dark');
+}, {hash: '', colorScheme: 'dark'});
+
+test('very many ghosts are boxes', 'shapes', 20_500, async ({page}) => {
+  await complete(page);
+  assert.equal(await data(page, 'drawn'), '20500');
+  await page.evaluate(() => window.octopairView.select(7));
+  await page.keyboard.press('f');
+  // Boxes far from what the camera looks at are not drawn.
+  await page.waitForFunction(() => Number(document.documentElement.dataset.drawn) < 20_000);
+  assert.ok(Number(await data(page, 'drawn')) > 0);
+});
+
 test('every key has its effect', 'moving', 60, async ({page}) => {
   await checkKeys(page, {k: 'contacts'});
   await page.keyboard.press('.');
