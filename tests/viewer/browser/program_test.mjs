@@ -1,12 +1,12 @@
 // Tests pages of the program in Chromium: node program_test.mjs --program octopair --python python3 --package FOLDER [--only TEXT]
 import assert from 'node:assert/strict';
 import {spawnSync} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
-import {clickAt, data, launch, open, pixel, project, ready, runTests, settings, waitForData} from '../page/browser.mjs';
+import {accessibility, clickAt, data, launch, open, pixel, project, ready, runTests, settings, waitForData} from '../page/browser.mjs';
 import {checkAccessibility, checkKeys, colourAt, complete, depthDigits, depthText, describePicture, expectTable, light, near, partnersIn, readCsv, readJsonl,
   searchFor, tablePairs, text, topOf, waitForText} from './checks.mjs';
 import {hostileName, Inputs, shapesScene, threeBoxes} from './inputs.mjs';
@@ -648,6 +648,68 @@ test('an exported page without the rows of all pairs', async () => {
       await waitForText(page, '#selection', words);
       assert.equal(await data(page, 'selected'), pair);
       await waitForText(page, '#table-totals', /of 200,000 pairs, 44,650 less bad left out$/);
+    });
+  }
+});
+
+test('a report that compares with an older result', async () => {
+  const base = inputs.detect('shapes.json', '.jsonl', '--stage', 'features');
+  // The last object but one goes away from its neighbour, to the first.
+  const scene = shapesScene();
+  scene.objects[7].position = [-0.7, 0, 1.5];
+  writeFileSync(inputs.path('moved.json'), JSON.stringify(scene));
+  run(options.program, ['detect', inputs.path('moved.json'), '--stage', 'features', '--baseline', base, '--report', inputs.path('report.html'), '--unit', 'mm',
+    '-o', inputs.path('moved.jsonl'), '--quiet']);
+  const rows = readJsonl(inputs.path('moved.jsonl'));
+  const of = change => rows.filter(row => row.change === change);
+  assert.ok(['new', 'same', 'gone'].every(change => of(change).length > 0));
+  const address = pathToFileURL(inputs.path('report.html')).href;
+  const worst = [...of('new'), ...of('same')].reduce((best, row) => row.depth > best.depth ? row : best);
+  await withPage(address, async page => {
+    assert.equal(await text(page, '#counts'), `9 objects, ${rows.length - of('gone').length} collisions`);
+    assert.equal(await data(page, 'selected'), `${worst.a},${worst.b}`);
+    assert.match(await text(page, '#head'), /depth \(mm\)\s+change/);
+    assert.match(await text(page, '#selection h2'), new RegExp(`^${worst.class}, depth .*${depthDigits(worst.depth)} mm`, 'i'));
+    for (const change of ['new', 'same', 'gone']) {
+      const button = page.locator('#kinds button', {hasText: change});
+      assert.equal(await button.innerText(), `${of(change).length} ${change}`);
+      await button.click();
+      await page.waitForFunction(([word, count]) => {
+        const cells = [...document.querySelectorAll('#rows td.change')];
+        return cells.length === count && cells.every(cell => cell.textContent === word);
+      }, [change, of(change).length]);
+      await button.click();
+    }
+    await page.locator('#kinds button', {hasText: 'gone'}).click();
+    const [gone] = of('gone');
+    await page.locator('#rows tr', {hasText: gone.b_label ?? gone.b_name}).first().click();
+    await waitForText(page, '#selection', new RegExp(`^Gone: ${gone.class}[^]*${gone.a_name}[^]*${gone.b_name}`));
+    await waitForData(page, 'selected', '');
+    assert.deepEqual(await accessibility(page), []);
+    await page.keyboard.press('Escape');
+    assert.ok(await page.locator('#selection').isHidden());
+  });
+  const [other] = of('new');
+  await withPage(`${address}#selected=${other.a},${other.b}`, async page => {
+    assert.equal(await data(page, 'selected'), `${other.a},${other.b}`);
+    assert.match(await text(page, '#selection'), /change\s+new/);
+    assert.match(await text(page, '#legend'), /in both|contacts, with the deepest labelled\n.*the way out of it/);
+  });
+});
+
+test('a report about two files', async () => {
+  writeFileSync(inputs.path('walls.json'), JSON.stringify({objects: [{name: 'wall', shape: {type: 'box', half_extents: [2, 0.1, 1]}}]}));
+  writeFileSync(inputs.path('pipes.json'), JSON.stringify({objects: [{name: 'far', shape: {type: 'sphere', radius: 1}, position: [9, 0, 0]},
+    {name: 'pipe', shape: {type: 'cylinder', radius: 0.05, length: 1}, rotation: [1, 1, 0, 0]}]}));
+  const words = [inputs.path('walls.json'), '--against', inputs.path('pipes.json'), '--quiet'];
+  run(options.program, ['detect', ...words, '--stage', 'features', '--report', inputs.path('two.html'), '-o', inputs.path('two.jsonl')]);
+  run(options.program, ['view', ...words, '--export', inputs.path('two_view.html')]);
+  for (const name of ['two.html', 'two_view.html']) {
+    await withPage(pathToFileURL(inputs.path(name)).href, async page => {
+      assert.equal(await text(page, '#title'), 'walls.json against pipes.json');
+      assert.deepEqual(await tablePairs(page), [[0, 2]]);
+      assert.match(await text(page, '#selection'), /wall\s+walls\.json · #0\s+pipe\s+pipes\.json · #1/);
+      assert.deepEqual(await page.locator('#rows small').allInnerTexts(), ['walls.json', 'pipes.json']);
     });
   }
 });
