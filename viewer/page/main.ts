@@ -230,7 +230,7 @@ class Page {
   // Other objects may be shown: their names and groups are read again.
   private readRows(app: App): void {
     const {has} = app.model.view;
-    if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
+    if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.namesArrived()).catch(error => app.fail(error));
   }
 
   // Answers that the server computes on request are asked for once a second, and after the last frame.

@@ -40,6 +40,8 @@ export class Table {
   private whole: {frame: number; list: RowList; left: number} | null = null;
   private groups: Group[] | null = null;
   private begun = false;
+  // The frame whose numbers the buttons have.
+  private controlled = -1;
   private readonly open = new Map<string, number>();
   private abort = new AbortController();
   private readonly body = byId('rows');
@@ -79,6 +81,7 @@ export class Table {
     this.abort.abort();
     this.abort = new AbortController();
     const {signal} = this.abort;
+    if (this.controlled !== this.model.frame.info.frame && this.model.view.kind !== 'live') this.fillControls();
     try {
       if (this.source.exported || this.needsAll()) await this.loadAll(from, signal);
       else await this.loadPage(from, signal);
@@ -200,6 +203,7 @@ export class Table {
   // The buttons of classes and changes, each with its number of collisions, and the groups that the objects have.
   private fillControls(): void {
     const {info} = this.model.frame;
+    this.controlled = info.frame;
     const canFilter = this.model.view.kind !== 'live' && info.pairs <= wholeLimit;
     const classes = Object.entries(info.classes ?? {}).sort(([p], [q]) => severityOf(q) - severityOf(p));
     const changes = (['new', 'same', 'gone'] as const).filter(word => info[word] !== undefined).map(word => [word, info[word]!] as const);

@@ -233,6 +233,13 @@ test('classes, words, details and depths filter the list', 'static', 600, async 
   assert.deepEqual(await accessibility(page), []);
 });
 
+test('the buttons of classes have the numbers of their frame', 'moving', 200, async ({page, scene}) => {
+  await complete(page);
+  const other = [...Array(20).keys()].find(f => scene.classCounts(f).touching !== scene.classCounts(0).touching);
+  await page.locator('#frame-slider').fill(String(other));
+  await waitForText(page, '#kinds', new RegExp(`${scene.classCounts(other).touching} touching`));
+});
+
 test('groups gather the list, and keys move in it', 'static', 600, async ({page, scene}) => {
   await complete(page);
   await page.selectOption('#group', 'type');
