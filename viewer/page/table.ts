@@ -312,10 +312,8 @@ export class Table {
     line.setAttribute('aria-level', group ? '2' : '1');
     line.append(this.nameCell(row!, 'a'), this.nameCell(row!, 'b'));
     for (const column of columns) {
-      const cell = make('td', column.text(row!), column.style);
-      if (column.style === 'class') cell.classList.add(toneOf(row!.class ?? ''));
-      if (column.style === 'change') cell.classList.add(row!.change ?? '');
-      line.append(cell);
+      const tone = column.style === 'class' ? toneOf(row!.class ?? '') : column.style === 'change' ? row!.change ?? '' : '';
+      line.append(make('td', column.text(row!), `${column.style} ${tone}`.trim()));
     }
     line.title = [this.title(row!, 'a'), this.title(row!, 'b'), measureOf(row!, this.model.view.unit)?.long ?? ''].filter(text => text).join('\n');
     line.addEventListener('click', () => this.actions.open(row!));

@@ -94,7 +94,8 @@ public:
     Answer rows(const RowRequest& request) {
         std::vector<std::uint32_t> kept = select(request);
         // A frame may list only some of its pairs.
-        const std::uint64_t total = kept.size() == frame_.data.pairs.size() ? frame_.data.pair_count : kept.size();
+        const bool all = kept.size() == frame_.data.pairs.size();
+        const std::uint64_t total = all ? std::max<std::uint64_t>(frame_.data.pair_count, kept.size()) : kept.size();
         const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, kept.size()));
         const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, kept.size() - from));
         sort(kept, request.sort, from + count);
