@@ -136,6 +136,7 @@ void append(SceneContents& contents, SceneContents&& other) {
 /// Returns the name of each path: its last part, or the whole path if two files have the same last part.
 std::vector<std::string> short_names(const std::vector<std::string>& paths) {
     std::vector<std::string> names;
+    names.reserve(paths.size());
     for (const std::string& path : paths) names.push_back(path.substr(path.rfind('/') + 1));
     const std::set<std::string> different(names.begin(), names.end());
     return different.size() == names.size() ? names : paths;

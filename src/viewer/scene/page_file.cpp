@@ -32,12 +32,14 @@ struct PageFrame {
     std::uint64_t size() const { return before.size() + after.size(); }
 };
 PageFrame page_frame() {
-    constexpr std::string_view loader_begin = "<!-- loader ", loader_end = " -->", script_begin = "<!-- script --><script>",
-                               script_end = "</script>";
+    constexpr std::string_view loader_begin = "<!-- loader ", loader_end = " -->",
+                               script_begin = "<!-- script --><script>", script_end = "</script>";
     const std::string_view script = between(page, script_begin, script_end);
     const std::string_view loader = between(page, loader_begin, loader_end);
-    const std::string_view rest = page.substr(page.find(script_begin) + script_begin.size() + script.size() + script_end.size());
-    std::string after = "<script type=\"application/octet-stream\" id=\"packed\">" + base64(gzip(script, 9)) + "</script>\n<script>";
+    const std::string_view rest =
+        page.substr(page.find(script_begin) + script_begin.size() + script.size() + script_end.size());
+    std::string after =
+        "<script type=\"application/octet-stream\" id=\"packed\">" + base64(gzip(script, 9)) + "</script>\n<script>";
     after.append(loader).append(script_end).append(rest);
     return {std::string(page.substr(0, page.find(loader_begin))), std::move(after)};
 }

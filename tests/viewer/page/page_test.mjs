@@ -44,7 +44,7 @@ function middleOf(scene, k) {
 test('loads and counts', 'static', 10, async ({page, scene}) => {
   assert.equal(await data(page, 'drawn'), '10');
   assert.equal(await data(page, 'pairs'), String(scene.frame(0).pairs.length));
-  assert.match(await text(page, '#counts'), /^10 objects, \d+ pairs?$/);
+  assert.match(await text(page, '#counts'), /^10 objects, \d+ collisions?$/);
   assert.match(await page.title(), /mock static/);
 });
 
@@ -207,7 +207,7 @@ async function expectPairs(page, pairs) {
   assert.deepEqual(await tablePairs(page), pairs.slice(0, 100));
 }
 
-test('classes, words, details and depths filter the list', 'static', 600, async ({page, scene}) => {
+test('classes, words, details and depths filter the list', 'static', 300, async ({page, scene}) => {
   await complete(page);
   const counts = scene.classCounts(0);
   assert.deepEqual(await page.locator('#kinds button').allInnerTexts(), [`${counts.penetrating} penetrating`, `${counts.touching} touching`]);
@@ -240,7 +240,7 @@ test('the buttons of classes have the numbers of their frame', 'moving', 200, as
   await waitForText(page, '#kinds', new RegExp(`${scene.classCounts(other).touching} touching`));
 });
 
-test('groups gather the list, and keys move in it', 'static', 600, async ({page, scene}) => {
+test('groups gather the list, and keys move in it', 'static', 300, async ({page, scene}) => {
   await complete(page);
   await page.selectOption('#group', 'type');
   await waitForText(page, '#table-totals', /^1 to 6 of 6 groups, /);
