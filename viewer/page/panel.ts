@@ -69,9 +69,13 @@ export function showSummary(model: SceneModel): void {
   }
   for (const {name, first} of view.files) entries.push(['file', `${name}, from object ${count(first)}`]);
   byId('summary').replaceChildren(definitions(entries));
-  const {classes = {}, seconds: _, ...numbers} = frame.info;
-  const info: [string, string][] = Object.entries({...numbers, ...classes}).map(([name, value]) => [words(name), plain(value)]);
-  byId('frame-info').replaceChildren(definitions(info));
+  const {classes, seconds: _, pairs, pairs_listed: listed = pairs, frame: number, objects, began, ended, ...numbers} = frame.info;
+  const moves = view.frames > 1 || view.has.events || view.kind === 'live';
+  const info = {...(moves ? {frame: number, objects, began, ended} : {}), [classes ? 'collisions' : 'pairs']: pairs,
+    ...(listed < pairs ? {listed} : {}), ...classes, ...numbers};
+  byId('frame-title').textContent = moves ? 'Frame' : 'Result';
+  byId('frame-info').replaceChildren(definitions(Object.entries(info).filter(([, value]) => value !== undefined)
+    .map(([name, value]) => [words(name), plain(value)])));
   showSeconds({...view.summary.seconds as Record<string, number> | undefined, ...frame.info.seconds});
 }
 

@@ -1,7 +1,7 @@
 // The list of collisions, in pages. A page that has all rows of the frame filters, sorts and groups them itself; otherwise the server filters and
 // sorts. A served page reads all rows when a filter or a group needs them.
 import {measureOf, severityOf, thicknessOf, toneOf} from './collision.ts';
-import {byId, count, counted, isAbort, later, make} from './dom.ts';
+import {byId, count, counted, isAbort, later, make, pathBefore, tail} from './dom.ts';
 import {type Filter, filterDetails, type Group, type Grouping, groupings, isGone, type Order, RowList} from './row_list.ts';
 import type {SceneModel} from './scene_model.ts';
 import type {Source} from './source.ts';
@@ -387,6 +387,7 @@ export class Table {
     const object = row[side];
     const level = this.model.detailOf(object, 'level');
     const known = [this.model.detailOf(object, 'type'), level, level ? '' : this.model.detailOf(object, 'parent'), this.model.fileOf(object)];
+    if (!known.some(text => text)) known.push(tail(pathBefore(row[`name_${side}`] ?? this.model.nameOf(object)), 2));
     return known.filter(text => text).join(' · ') || (this.model.labelOf(object).startsWith('object ') ? '' : `#${this.model.numberOf(object)}`);
   }
 

@@ -48,6 +48,15 @@ test('loads and counts', 'static', 10, async ({page, scene}) => {
   assert.match(await page.title(), /mock static/);
 });
 
+test('the summary of the run', 'static', 60, async ({page, scene}) => {
+  await complete(page);
+  await page.click('#tab-scene');
+  const {penetrating, touching} = scene.classCounts(0);
+  assert.deepEqual((await text(page, '#frame-info')).split(/\s+/), ['collisions', String(penetrating + touching),
+    ...Object.entries(scene.classCounts(0)).flatMap(([word, count]) => [word, String(count)])]);
+  assert.match(await text(page, '#summary'), /objects\s+60\s+unit\s+m\s+format\s+npy/);
+});
+
 test('colours are those of the legend', 'static', 1, async ({page, scene}) => {
   // The top of a box that does not collide has the colour of the legend itself.
   const {boxes} = scene.frame(0);
