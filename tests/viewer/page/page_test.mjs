@@ -290,6 +290,26 @@ test('rows have labels, and dense rows one line', 'static', 12, async ({page}) =
   assert.match(await text(page, '#head'), /depth \(m\)/);
 });
 
+test('rows have a thickness where it is known, and labels that tell objects apart', 'static', 12, async ({page, scene}) => {
+  const kinds = ['at_most', 'at_least', 'undecided'];
+  const nameOf = k => k === 1 ? 'hull/rib' : k === 2 ? 'deck/rib' : 'hull/plate';
+  await page.route('**/collisions/*.json*', async route => {
+    const answer = await (await route.fetch()).json();
+    answer.rows.forEach((row, k) => Object.assign(row, {name_a: nameOf(row.a), name_b: nameOf(row.b), thickness_kind: kinds[k % 3]}, k % 3 < 2 ? {thickness: 0.25} : {}));
+    await route.fulfill({json: answer});
+  });
+  await page.route('**/names.json', route => route.fulfill({json: scene.names.map((_, k) => nameOf(k))}));
+  await page.reload();
+  await complete(page);
+  assert.match(await text(page, '#head'), /thickness \(m\)/);
+  const cells = await page.locator('#rows td:last-child').allInnerTexts();
+  assert.deepEqual(cells, cells.map((_, k) => ['≤ 0.25', '≥ 0.25', '?'][k % 3]));
+  await page.locator('#rows tr').first().click();
+  await waitForText(page, '#selection', /thickness\s+≤ 0\.25 m/);
+  const labelOf = k => nameOf(k).endsWith('rib') ? nameOf(k) : `plate #${k}`;
+  assert.deepEqual(await page.locator('#rows .label').allInnerTexts(), (await tablePairs(page)).flat().map(labelOf));
+});
+
 test('a scale has a round length', 'static', 40, async ({page}) => {
   await complete(page);
   for (const key of ['+', '-', '-', '-']) {
