@@ -122,13 +122,11 @@ def compiler_options():
 
 
 def cmake_options():
-    # The program of the wheel has the viewer if the tools that make its page are there.
-    viewer = "ON" if shutil.which("node") and shutil.which("npm") else "OFF"
     # scikit-build, which built the package up to version 0.2, reads the first two variables.
     further = (os.environ.get(name, "") for name in ("CMAKE_ARGS", "SKBUILD_CONFIGURE_OPTIONS", "OCTOPAIR_CMAKE_OPTIONS"))
     return ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", f"-DPython_EXECUTABLE={sys.executable}", "-DOCTOPAIR_WITH_PYTHON=ON",
             "-DOCTOPAIR_PYTHON_WHEEL=ON", "-DOCTOPAIR_BUILD_TESTS=OFF", "-DOCTOPAIR_WITH_ADAPTERS=OFF", "-DOCTOPAIR_WITH_C=OFF",
-            "-DOCTOPAIR_WITH_SYSTEMD=OFF", "-DOCTOPAIR_SHARED_LIBS=OFF", f"-DOCTOPAIR_WITH_VIEWER={viewer}", *compiler_options(),
+            "-DOCTOPAIR_WITH_SYSTEMD=OFF", "-DOCTOPAIR_SHARED_LIBS=OFF", "-DOCTOPAIR_WITH_VIEWER=ON", *compiler_options(),
             *shlex.split(" ".join(further))]
 
 

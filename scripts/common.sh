@@ -8,8 +8,7 @@ fail() {
     exit 1
 }
 
-# Folder with the libraries of the viewer's page (viewer/install.mjs). Builds in other folders use it, too, as those of Debian
-# packages do.
+# Folder with the libraries of the viewer's page (viewer/install.mjs), for tests of the page.
 export OCTOPAIR_NPM_FOLDER=${OCTOPAIR_NPM_FOLDER:-$root/build/npm}
 
 # Prints the packages of a component that this machine needs, one per line. Lines of its list:

@@ -151,10 +151,27 @@ class StaticScene {
       version: '0.2.0', title: `mock ${this.kind}`, kind: 'scene', objects: this.n, shown: this.rows, frames: this.frames, origin: [1000, 2000, 3000],
       bounds: {min: [1000 - edge, 2000 - edge, 3000 - edge], max: [1000 + side + edge, 2000 + side + edge, 3000 + side + edge]}, up: 'z', unit: 'm', margin: 0,
       has: {names: this.names !== null, groups: true, shapes: this.shapes !== null, contacts: this.n <= 20000, classes: this.n <= 20000, events: this.kind === 'moving', search: true,
-        near: this.shown !== null, rows: this.shown !== null},
+        near: this.shown !== null, rows: this.shown !== null, details: this.n <= 20000},
       notices: this.shown ? [`${(this.n - this.rows).toLocaleString('en-US')} of ${this.n.toLocaleString('en-US')} boxes are not drawn until you zoom in.`] : [],
       summary: {pairs: this.frame(0).pairs.length, format: 'npy', seconds: {read: 0.1, detect: 0.02}},
     };
+  }
+
+  detailsOf(k) {
+    return {type: ['plate', 'rib', 'bolt'][k % 3], level: `deck ${k % 2}`, material: 'steel'};
+  }
+
+  details() {
+    if (this.n > 20000) return null;
+    const words = ['', 'plate', 'rib', 'bolt', 'deck 0', 'deck 1', 'steel'];
+    const column = detail => Array.from({length: this.rows}, (_, row) => words.indexOf(this.detailsOf(this.objectAt(row))[detail]));
+    return {words, type: column('type'), level: column('level'), material: column('material')};
+  }
+
+  classCounts(f) {
+    if (this.n > 20000) return undefined;
+    const words = this.frame(f).pairs.map(pair => this.classOf(...pair));
+    return Object.fromEntries([...new Set(words)].map(word => [word, words.filter(other => other === word).length]));
   }
 
   objectAt(row) {
@@ -237,7 +254,7 @@ class StaticScene {
     const partners = pairs.filter(pair => pair.includes(k)).map(([a, b]) => a === k ? b : a).sort((a, b) => a - b);
     const corner = from => [0, 1, 2].map(axis => boxes[6 * k + from + axis] + 1000 * (axis + 1));
     const row = this.shown ? (k % 4 === 0 ? k / 4 : -1) : k;
-    return {index: k, name: this.names?.[k] ?? '', details: {type: 'plate', material: 'steel'}, box: {min: corner(0), max: corner(3)}, row, code: '{1,4}',
+    return {index: k, name: this.names?.[k] ?? '', details: this.detailsOf(k), box: {min: corner(0), max: corner(3)}, row, code: '{1,4}',
       level: this.level(k), groups: 1 << k % 3, partner_count: partners.length, partners: partners.slice(0, 1000)};
   }
 
@@ -309,6 +326,7 @@ class StaticScene {
       case 'shown.u0': return this.shown ? bytesOf(this.shown) : null;
       case 'groups.u0': return bytesOf(Uint32Array.from({length: this.rows}, (_, row) => 1 << this.objectAt(row) % 3));
       case 'names.json': return this.names && this.ofRows(this.names, 1);
+      case 'details.json': return this.details();
       case 'geometry.u0': return bytesOf(Uint32Array.from({length: this.rows}, (_, row) => row % 3));
       case 'shapes.json': return {shapes: this.shapes.map(s => ({kind: 'mesh', vertices: s.vertices.length / 3, triangles: s.triangles.length / 3}))};
       case 'shape/0': return shape ? Buffer.concat([bytesOf(Float32Array.from(shape.vertices)), bytesOf(Uint32Array.from(shape.triangles))]) : null;
@@ -322,7 +340,7 @@ class StaticScene {
     const {boxes, pairs} = this.frame(f);
     switch (name) {
       case 'frame': return binary ? bytesOf(this.ofRows(boxes, 6)) : {frame: f, pairs: pairs.length, pairs_listed: pairs.length,
-        began: this.changes(f).began.length, ended: this.changes(f).ended.length, seconds: {detect: 0.001}};
+        began: this.changes(f).began.length, ended: this.changes(f).ended.length, classes: this.classCounts(f), seconds: {detect: 0.001}};
       case 'poses': return this.poses(f);
       case 'partners': return bytesOf(this.ofRows(this.partnerCounts(f), 1));
       case 'classes': return this.n <= 20000 ? bytesOf(Uint8Array.from(this.ofRows(this.worstClasses(f), 1))) : null;
@@ -375,7 +393,7 @@ class LiveScene extends StaticScene {
   }
 
   view() {
-    return {...super.view(), kind: 'live', has: {...super.view().has, names: false, groups: false, events: true, contacts: false, classes: false}};
+    return {...super.view(), kind: 'live', has: {...super.view().has, names: false, groups: false, events: true, contacts: false, classes: false, details: false}};
   }
 
   receive(message, send) {

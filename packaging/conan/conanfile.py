@@ -38,7 +38,7 @@ REQUIREMENTS = {
     "pipeline": ["eigen/[>=3.4 <4]", "boost/[>=1.74 <2]"],
     "service": ["grpc/[>=1.54.3 <2]", "protobuf/[>=3.21 <7]", "openssl/[>=3 <4]", "xxhash/[>=0.8.1 <1]", "spdlog/[>=1.10 <2]",
                 "nlohmann_json/[>=3.11 <4]", "prometheus-cpp/[>=1.1 <2]"],
-    "program": ["cli11/[>=2.3 <3]", "fmt/[>=9]", "nlohmann_json/[>=3.11 <4]"],
+    "program": ["cli11/[>=2.3 <3]", "fmt/[>=9]", "nlohmann_json/[>=3.11 <4]", "zlib/[>=1.2.13 <2]"],
     "meshes": ["assimp/[>=5.2 <6]", "expat/[>=2.5 <3]", "zlib/[>=1.2.13 <2]", "minizip/[>=1.2.13 <2]",
                "xxhash/[>=0.8.1 <1]"],
     "mpi": ["openmpi/[>=4.1 <6]"],
@@ -63,7 +63,7 @@ LIBRARIES = {
 ADAPTERS = ["cgal", "fcl", "bullet"]
 # What only the program uses, by option. Conan refuses a requirement that no component has.
 PROGRAM_REQUIRES = {
-    "program": ["cli11::cli11", "fmt::fmt", "nlohmann_json::nlohmann_json"],
+    "program": ["cli11::cli11", "fmt::fmt", "nlohmann_json::nlohmann_json", "zlib::zlib"],
     "service": ["grpc::grpc++_reflection", "xxhash::xxhash", "spdlog::spdlog", "prometheus-cpp::prometheus-cpp-pull",
                 "nlohmann_json::nlohmann_json"],
     "meshes": ["assimp::assimp", "expat::expat", "zlib::zlib", "minizip::minizip", "xxhash::xxhash"],
@@ -89,7 +89,6 @@ class OctopairConan(ConanFile):
         root = os.path.join(self.recipe_folder, "..", "..")
         for pattern in ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "src/*", "adapters/*", "packaging/*", "docs/octopair.1"):
             copy(self, pattern, src=root, dst=self.export_sources_folder)
-        # The libraries of the page are installed during the build.
         copy(self, "viewer/*", src=root, dst=self.export_sources_folder, excludes="viewer/node_modules/*")
 
     def config_options(self):
@@ -120,9 +119,6 @@ class OctopairConan(ConanFile):
         if self.options.service:
             self.tool_requires("grpc/<host_version>")
             self.tool_requires("protobuf/<host_version>")
-        # Makes the page, with npm, which fetches libraries from its registry.
-        if self.options.viewer:
-            self.tool_requires("nodejs/[>=18]")
 
     def validate(self):
         check_min_cppstd(self, 20)

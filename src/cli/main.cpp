@@ -18,7 +18,7 @@ void add_missing_view(Command& program) {
         throw Error(
             ErrorCode::usage,
             "view: this octopair was built without the viewer; `scripts/run view INPUT` builds it, and so does CMake "
-            "with -DOCTOPAIR_WITH_VIEWER=ON, which needs the commands node and npm (scripts/setup viewer)");
+            "with -DOCTOPAIR_WITH_VIEWER=ON");
     });
 }
 #endif

@@ -60,19 +60,6 @@ function(vcpkg_cmake_config_fixup)
     file(REMOVE_RECURSE ${PACKAGE}/lib/cmake)
 endfunction()
 
-# Finds a program. The variable NODEJS gets its path.
-function(vcpkg_find_acquire_program name)
-    if(NOT name STREQUAL NODEJS)
-        message(FATAL_ERROR "vcpkg_find_acquire_program: only NODEJS is known, not ${name}")
-    endif()
-    find_program(NODEJS NAMES node nodejs REQUIRED NO_CACHE)
-    set(NODEJS ${NODEJS} PARENT_SCOPE)
-endfunction()
-
-function(vcpkg_add_to_path folder)
-    set(ENV{PATH} "$ENV{PATH}:${folder}")
-endfunction()
-
 # The test does not use files of pkg-config.
 function(vcpkg_fixup_pkgconfig)
 endfunction()

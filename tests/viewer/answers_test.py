@@ -319,7 +319,7 @@ class Export(InFolder):
                     answer.pop('seconds', None)
                     self.assertEqual(json.loads(body), answer, address)
                     continue
-                query = '?count=1000&sort=worst' if address.startswith('collisions/') else ''
+                query = '?count=200000&sort=worst' if address.startswith('collisions/') else ''
                 self.assertEqual(body, view.request(f'/{address}{query}')[2], address)
         scene = json.loads(data['view.json'])
         for frame in range(scene['frames']):
@@ -351,6 +351,37 @@ class Export(InFolder):
         self.run_program('detect', self.path('cubes.obj'), '--stage', 'features', '--quiet', '--output', self.path('found.jsonl'))
         self.check_export(self.path('found.jsonl'))
         self.check_export(self.path('cubes.obj'), self.path('found.jsonl'))
+
+    def test_options_of_detect(self):
+        """Options of a search give the collisions that `octopair detect` finds with them."""
+        for name, places in (('s.json', (0, 1.5, 3.9, 9)), ('t.json', (0.5, 4.5))):
+            with open(self.path(name), 'w', encoding='utf-8') as file:
+                json.dump({'objects': [{'name': f'{name[0]}{x}', 'shape': {'type': 'sphere', 'radius': 1}, 'position': [x, 0, 0]} for x in places]}, file)
+        with open(self.path('rules.json'), 'w', encoding='utf-8') as file:
+            json.dump({'exclude': [{'a': 's0', 'b': '*'}]}, file)
+        seen = set()
+        for options in ([], ['--against', self.path('t.json')], ['--margin', '0.5'], ['--tolerance', '0.6'], ['--min-depth', '0.6', '--margin', '0.5'],
+                        ['--exclude', self.path('rules.json')], ['--against', self.path('t.json'), '--exclude', self.path('rules.json')]):
+            run = [self.path('s.json'), *options, '--quiet']
+            self.run_program('detect', *run, '--stage', 'features', '-o', self.path('r.jsonl'))
+            with open(self.path('r.jsonl'), encoding='utf-8') as file:
+                expected = [json.loads(line) for line in file]
+            self.assertEqual(self.run_program('view', *run, '--export', self.path('page.html')).stderr, '')
+            data, _ = self.data_of(self.path('page.html'))
+            second = json.loads(data['view.json']).get('second_set', 0)
+            self.assertEqual(second, 4 if '--against' in options else 0)
+            rows = sorted(json.loads(data['collisions/0.json'])['rows'], key=lambda row: (row['a'], row['b']))
+            self.assertEqual([(row['a'], row['b'] - second, row['class'], row.get('depth')) for row in rows],
+                             [(row['a'], row['b'], row['class'], row.get('depth')) for row in expected])
+            seen.add(data['collisions/0.json'])
+        self.assertEqual(len(seen), 7, 'each option changes the result')
+
+    def test_options_of_a_search_need_a_search(self):
+        scene_files.write_cubes_obj(self.path('cubes.obj'))
+        self.run_program('detect', self.path('cubes.obj'), '--quiet', '-o', self.path('found.jsonl'))
+        for options in (['--tolerance', '1'], ['--against', self.path('cubes.obj')], ['--objects', 'triangle'], ['--same-parent', 'exclude']):
+            done = self.run_program('view', self.path('cubes.obj'), self.path('found.jsonl'), *options, '--export', self.path('page.html'))
+            self.assertEqual((done.returncode, done.stderr), (2, f'octopair: {options[0]}: not with a result, whose pairs are known\n'))
 
     def written(self, *inputs):
         """Exports a page, and returns what the line on standard error says after the name and the size."""

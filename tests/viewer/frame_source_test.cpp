@@ -223,6 +223,36 @@ TEST(FrameSource, OfALargeScene) {
     EXPECT_THROW(body_of(source, "near/0.bin"), Error);
 }
 
+/// Details are numbers of words. They are found by searches for objects and for rows.
+TEST(FrameSource, DetailsOfObjects) {
+    FakeFinder finder(8, 1, 60);
+    SceneContents contents = contents_of(60, false);
+    contents.details.words = {"", "IfcWall", "Level 1", "steel"};
+    contents.details.columns = {{"type", std::vector<std::uint32_t>(60)}, {"level", std::vector<std::uint32_t>(60, 2)}};
+    contents.details.columns[0].words[7] = 1;
+    contents.files = {{"a.ifc", 0}, {"b.ifc", 40}};
+    contents.second_set = 40;
+    FrameSource source(std::move(contents), finder, 50);
+    source.load({});
+    const Json view = json_of(source, "view.json"), details = json_of(source, "details.json");
+    EXPECT_EQ(view["has"]["details"], true);
+    EXPECT_EQ(view["files"][1], (Json{{"name", "b.ifc"}, {"first", 40}}));
+    EXPECT_EQ(view["second_set"], 40);
+    EXPECT_EQ(details["words"][1], "IfcWall");
+    const auto shown = array_of<std::uint32_t>(body_of(source, "shown.u32"));
+    for (std::size_t row = 0; row < shown.size(); ++row) {
+        EXPECT_EQ(details["type"][row], shown[row] == 7 ? 1 : 0);
+        EXPECT_EQ(details["level"][row], 2);
+    }
+    EXPECT_FALSE(details.contains("material"));
+    EXPECT_EQ(json_of(source, "object/0/7.json")["details"], (Json{{"type", "IfcWall"}, {"level", "Level 1"}}));
+    EXPECT_EQ(json_of(source, "object/0/8.json")["details"], (Json{{"level", "Level 1"}}));
+    EXPECT_EQ(json_of(source, "search.json?q=ifcwall")["found"][0]["index"], 7);
+    EXPECT_EQ(json_of(source, "search.json?q=ifcwall")["total"], 1);
+    const Json own = json_of(source, "collisions/0.json?object=7");
+    EXPECT_EQ(json_of(source, "collisions/0.json?q=WALL")["total"], own["total"]);
+}
+
 TEST(FrameSource, OfNoObjects) {
     FakeFinder finder(10, 1, 0);
     FrameSource source(contents_of(0, false), finder);

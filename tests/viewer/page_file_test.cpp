@@ -1,79 +1,19 @@
 // Exported pages of a scene in memory.
 #include <gtest/gtest.h>
-#include <zlib.h>
-
-#include <array>
-#include <map>
 
 #include "octopair/error.hpp"
+#include "support/page_data.hpp"
 #include "viewer/fake_finder.hpp"
+#include "viewer/scene/page.hpp"
 #include "viewer/scene/page_file.hpp"
-#include "viewer/server/page.hpp"
 
 namespace octopair::test {
 
 namespace {
 
-int base64_value(char c) {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::size_t at = digits.find(c);
-    return at == std::string_view::npos ? -1 : int(at);
-}
-
-std::string from_base64(std::string_view text) {
-    EXPECT_EQ(text.size() % 4, 0u);
-    std::string bytes;
-    std::uint32_t word = 0, bits = 0;
-    for (const char c : text) {
-        if (c == '=') break;
-        EXPECT_GE(base64_value(c), 0);
-        word = word << 6 | std::uint32_t(base64_value(c));
-        bits += 6;
-        if (bits < 8) continue;
-        bits -= 8;
-        bytes += char(word >> bits & 255);
-    }
-    return bytes;
-}
-
-/// Unpacks gzip of any length, without code of the viewer.
-std::string unpacked(const std::string& compressed) {
-    z_stream stream{};
-    EXPECT_EQ(inflateInit2(&stream, 15 + 16), Z_OK);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
-    stream.avail_in = uInt(compressed.size());
-    std::string out;
-    int result = Z_OK;
-    while (result == Z_OK) {
-        std::array<char, 65536> part;
-        stream.next_out = reinterpret_cast<Bytef*>(part.data());
-        stream.avail_out = uInt(part.size());
-        result = inflate(&stream, Z_NO_FLUSH);
-        out.append(part.data(), part.size() - stream.avail_out);
-    }
-    EXPECT_EQ(result, Z_STREAM_END);
-    inflateEnd(&stream);
-    return out;
-}
-
-/// Reads the elements of a page as a browser does.
-std::map<std::string, std::string> data_of(const std::string& page) {
-    std::map<std::string, std::string> data;
-    constexpr std::string_view before = "<script type=\"application/octet-stream\" data-address=\"", end = "</script>";
-    for (std::size_t at = 0; (at = page.find(before, at)) != std::string::npos;) {
-        const std::size_t name = at + before.size(), quote = page.find("\">", name), last = page.find(end, quote);
-        const std::string address = page.substr(name, quote - name);
-        EXPECT_FALSE(data.contains(address)) << address;
-        data[address] = unpacked(from_base64(std::string_view(page).substr(quote + 2, last - quote - 2)));
-        at = last;
-    }
-    return data;
-}
-
 std::string page_of(FrameSource& source, std::uint64_t most = viewer::max_page_bytes) {
     std::string page;
-    write_page(
-        source, [&](std::string_view text) { page += text; }, most);
+    write_page(source, [&](std::string_view text) { page += text; }, {most});
     return page;
 }
 
@@ -105,7 +45,7 @@ TEST(PageFile, HasTheAnswersOfTheServer) {
                 continue;
             }
             const bool table = address.starts_with("collisions/");
-            EXPECT_EQ(bytes, body_of(source, address + (table ? "?count=1000&sort=worst" : ""))) << address;
+            EXPECT_EQ(bytes, body_of(source, address + (table ? "?count=200000&sort=worst" : ""))) << address;
         }
         for (std::uint64_t f = 0; f < finder.frames(); ++f) {
             const std::string number = std::to_string(f);
@@ -153,7 +93,11 @@ TEST(PageFile, LeavesOutFramesBeyondTheLimit) {
         source->load({});
         source->count_frames({}, {});
     }
-    const std::uint64_t html = octopair::viewer::page().size(), most = html + (page_of(whole).size() - html) / 2;
+    FakeFinder first_finder(21, 1, 60);
+    FrameSource first(contents_of(60, true), first_finder);
+    first.load({});
+    first.count_frames({}, {});
+    const std::uint64_t least = page_of(first).size(), most = least + (page_of(whole).size() - least) / 2;
     const std::string page = page_of(part, most);
     EXPECT_LE(page.size(), most);
     const auto data = data_of(page);
@@ -176,9 +120,7 @@ TEST(PageFile, RefusesAFirstFrameBeyondTheLimit) {
     FrameSource source(contents_of(60, true), finder);
     source.load({});
     bool wrote = false;
-    EXPECT_THROW(write_page(
-                     source, [&](std::string_view) { wrote = true; }, 1000),
-                 Error);
+    EXPECT_THROW(write_page(source, [&](std::string_view) { wrote = true; }, {1000}), Error);
     EXPECT_FALSE(wrote);
 }
 

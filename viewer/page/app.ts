@@ -1,11 +1,12 @@
 // Connects the parts of the page: a change of the frame, the selection or a setting reaches all that show it.
 import * as THREE from 'three';
-import {legend, type Look, opacityOf, paint, type Palette, paletteOf} from './colours.ts';
-import {isAbort, messageOf, tail} from './dom.ts';
+import {legend, type LegendEntry, type Look, opacityOf, paint, type Palette, paletteOf} from './colours.ts';
+import {toneOf} from './collision.ts';
+import {counted, isAbort, messageOf} from './dom.ts';
 import {contactColour} from './contact_layer.ts';
-import {glassOpacity, passOf} from './draw_pass.ts';
+import {glassOpacity, Pass, passOf} from './draw_pass.ts';
 import {bestView, type Focus, focusOf, sectionOf} from './focus.ts';
-import {hideLabel, octantText, placeDepths, showLabel} from './hover.ts';
+import {hideLabel, octantText, placeDepths, showLabel, showScale} from './hover.ts';
 import {isDark} from './layout.ts';
 import {Link} from './link.ts';
 import {Near} from './near.ts';
@@ -15,6 +16,7 @@ import {pairLimit} from './pair_layer.ts';
 import {say, showLegend, showNotices, showSummary, showTitle} from './panel.ts';
 import {Picker} from './picker.ts';
 import {Pointer} from './pointer.ts';
+import {isGone} from './row_list.ts';
 import type {Frame, SceneModel} from './scene_model.ts';
 import {Search} from './search.ts';
 import {Selection} from './selection.ts';
@@ -25,6 +27,11 @@ import {computeStates, State} from './states.ts';
 import {Table} from './table.ts';
 import type {Timeline} from './timeline.ts';
 import type {Collision, Collisions, Point} from './types.ts';
+
+// More ghosts than this are boxes, which are drawn faster than shapes.
+const ghostShapes = 20_000;
+// More marks would cover the small picture.
+const markedPlaces = 200;
 
 export class App {
   readonly selection: Selection;
@@ -43,6 +50,7 @@ export class App {
   private contactRequest = new AbortController();
   private contactsNow = '';
   private contactRows: readonly Collision[] | null = null;
+  private ghostBoxes = false;
   private look: Look = {ghosts: false, glass: -1};
   // The camera was placed to see the selection.
   private framed = false;
@@ -59,11 +67,10 @@ export class App {
     const failed = (error: unknown): void => this.fail(error);
     this.selection = new Selection(source, model, {
       changed: () => this.selectionChanged(), clear: () => void this.clearSelection(), zoom: () => this.zoomToSelection(),
-      onlySelection: () => this.toggleOnlySelection(), section: () => this.toggleSection(), place: () => this.place(),
+      onlySelection: () => this.toggleOnlySelection(), section: () => this.toggleSection(), copyLink: () => void this.copyLink(),
+      place: () => this.place(),
     });
-    this.table = new Table(source, {
-      frame: () => model.frame.info.frame, selected: () => this.selection.objects, open: row => void this.openCollision(row), failed,
-    }, model.view.has.events || model.view.kind === 'live');
+    this.table = new Table(source, model, {selected: () => this.selection.objects, open: row => void this.openCollision(row), failed});
     this.search = new Search(source, model, object => void this.openObject(object), failed);
     this.near = new Near(source, model, this.stage, () => this.recolour(), failed);
     this.picker = new Picker(this);
@@ -127,6 +134,17 @@ export class App {
     this.options = new Options(this.settings, this.model);
   }
 
+  async copyLink(): Promise<void> {
+    say(await this.link.copy() ? 'Link copied' : 'The link is in the address bar');
+  }
+
+  // Names and details have come: what shows them shows them now.
+  async namesArrived(): Promise<void> {
+    this.selection.namesArrived();
+    this.recolour();
+    await this.table.namesArrived();
+  }
+
   // A running scene may have no collision yet.
   selectWorstSoon(): void {
     this.waitsForWorst = true;
@@ -144,7 +162,7 @@ export class App {
     const {model, source, settings} = this;
     const {frame} = model;
     const live = model.view.kind === 'live';
-    const levels = settings.values.colour === 'level' || source.exported;
+    const levels = settings.values.colour === 'level' || (source.exported && model.view.has.octants);
     await Promise.all([withTable ? this.table.load(0) : null, this.showOctants(), live ? null : model.readPairs(source, frame),
       levels ? model.readLevels(source) : null]);
     if (frame !== model.frame && !live) return;
@@ -194,8 +212,9 @@ export class App {
     paint(model, this.states, {values: settings.values, palette, look}, this.colours);
     stage.ghosts = look.ghosts;
     stage.glass = look.glass >= 0;
+    this.ghostBoxes = look.ghosts && settings.values.style === 'shapes' && stage.shapes.instances > ghostShapes;
     stage.boxes.setColours(this.boxColours());
-    stage.shapes.setColours(this.colours);
+    stage.shapes.setColours(this.ghostBoxes ? this.withoutGhosts() : this.colours);
     this.colourNear(palette);
     this.outline(palette);
     stage.pairs.show(model, settings.values.lines, objects, partners, palette);
@@ -231,7 +250,13 @@ export class App {
     const {focus} = this;
     const seesAll = this.stage.camera.unmoved && !this.framed;
     if (!focus || seesAll || this.settings.values.show === 'selection') return null;
-    return {focus, view: this.viewOf(focus), colour: contactColour(this.selection.collision, this.palette())};
+    return {focus, view: this.viewOf(focus), others: this.worstPlaces(), colour: contactColour(this.selection.collision, this.palette())};
+  }
+
+  // The places of the worst collisions: those in which objects overlap, as far as the table has them.
+  private worstPlaces(): THREE.Vector3[] {
+    const worst = this.table.known.filter(row => toneOf(row.class ?? '') === 'bad' && row.contacts?.length).slice(0, markedPlaces);
+    return worst.map(row => new THREE.Vector3(...this.model.toRelative(row.contacts![0]!.point)));
   }
 
   private viewOf(focus: Focus): {yaw: number; pitch: number} {
@@ -328,6 +353,7 @@ export class App {
   }
 
   async openCollision(row: Collision): Promise<void> {
+    if (isGone(row)) return this.selection.showGone(row);
     return this.openAll([row.a, row.b], row);
   }
 
@@ -412,8 +438,9 @@ export class App {
     if (octant) return showLabel(this.stage, octantText(octant), x, y);
     const object = this.picker.pick(x, y);
     if (object < 0) return hideLabel();
-    const name = this.model.nameOf(object);
-    return showLabel(this.stage, name ? `${object} ${name}` : `object ${object}`, x, y);
+    const {model} = this;
+    const about = (['type', 'level'] as const).map(detail => model.detailOf(object, detail)).filter(text => text).join(' · ');
+    return showLabel(this.stage, [model.labelOf(object), about, `#${model.numberOf(object)}`].filter(text => text).join('\n'), x, y);
   }
 
   private drawn(): void {
@@ -426,6 +453,7 @@ export class App {
     dataset.lines = String(stage.pairs.count);
     dataset.contacts = String(stage.contacts.count);
     placeDepths(stage);
+    showScale(stage, model.view.unit);
   }
 
   // The colours of the boxes: a row whose shape is drawn instead has no box.
@@ -433,7 +461,16 @@ export class App {
     const {model, stage, settings} = this;
     if (settings.values.style !== 'shapes' || !model.geometry || stage.shapes.shapes.size === 0) return this.colours;
     const colours = this.colours.slice();
-    for (let row = 0; row < model.rows; ++row) if (stage.shapes.shapes.has(model.geometry[row]!)) colours[4 * row + 3] = 0;
+    for (let row = 0; row < model.rows; ++row) {
+      const isShape = stage.shapes.shapes.has(model.geometry[row]!) && !(this.ghostBoxes && this.passOf(row) === Pass.ghost);
+      if (isShape) colours[4 * row + 3] = 0;
+    }
+    return colours;
+  }
+
+  private withoutGhosts(): Uint8Array {
+    const colours = this.colours.slice();
+    for (let row = 0; row < this.model.rows; ++row) if (this.passOf(row) === Pass.ghost) colours[4 * row + 3] = 0;
     return colours;
   }
 
@@ -502,10 +539,21 @@ export class App {
 
   private showLegend(): void {
     const {objects, isPair} = this.selection;
-    const names = isPair ? objects.map((object, k) => tail(this.selection.nameOf(k)) || `object ${object}`) : null;
+    const names = isPair ? objects.map((_, k) => this.selection.labelOf(k)) : null;
     const boxes = legend(this.model, this.states, {values: this.settings.values, palette: this.palette(), look: this.look}, names);
     const common = this.stage.caps.hasCommon ? [{text: 'in both', colour: this.palette().contact}] : [];
-    showLegend([...boxes.slice(0, 2), ...common, ...boxes.slice(2), ...this.stage.octants.legend()]);
+    showLegend([...boxes.slice(0, 2), ...common, ...boxes.slice(2), ...this.contactLegend(), ...this.stage.octants.legend()]);
+  }
+
+  // What the marks of the selected collision mean.
+  private contactLegend(): LegendEntry[] {
+    const {collision} = this.selection;
+    const first = collision?.contacts?.[0];
+    if (!this.focus || !first || this.settings.values.contacts === 'none') return [];
+    const colour = contactColour(collision, this.palette());
+    const arrow = first.normal && first.depth !== undefined;
+    return [{text: 'contacts, with the deepest labelled', colour, mark: '●'},
+      ...(arrow ? [{text: `the way out of it for the ${this.selection.objects[0] === collision!.a ? 'second' : 'first'} object`, colour, mark: '→'}] : [])];
   }
 
   // A notice that stays, such as the end of the program.
@@ -526,7 +574,7 @@ export class App {
     const withLines = Math.min(pairLimit, model.frame.pairs.length / 2);
     const {pairs} = model.frame.info;
     if (lines === 'all' && withLines < pairs) texts.push(`The first ${number(withLines)} of ${number(pairs)} pairs have lines.`);
-    if (stage.shapes.leftOut > 0) texts.push(`${number(stage.shapes.leftOut)} shapes are left out.`);
+    if (stage.shapes.leftOut > 0) texts.push(`${counted(stage.shapes.leftOut, 'shape is', 'shapes are')} left out.`);
     showNotices(texts);
   }
 }

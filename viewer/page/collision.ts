@@ -1,4 +1,4 @@
-// The words for a collision: its class, and its depth with what is known of it.
+// The words for a collision: its class, its depth with what is known of it, and what these mean.
 import {significant} from './dom.ts';
 import type {Collision} from './types.ts';
 
@@ -6,8 +6,23 @@ import type {Collision} from './types.ts';
 export const classWords: readonly string[] = ['unknown', 'clearance', 'collision', 'touching', 'penetrating', 'contained', 'duplicate'];
 const severities: readonly number[] = [2, 0, 3, 1, 6, 5, 4];
 
+const meanings: Record<string, string> = {
+  clearance: 'The objects are apart, but nearer than the margin.',
+  collision: 'The two objects meet. The search did not determine how.',
+  touching: 'The objects share only surface, or a motion of at most the tolerance separates them.',
+  penetrating: 'The insides of the objects share space.',
+  contained: 'One object lies wholly inside the other.',
+  duplicate: 'The objects have the same geometry at the same place.',
+};
+
+const openMeanings: Record<string, string> = {a: 'The first object is not closed', b: 'The second object is not closed', ab: 'Neither object is closed'};
+
 function severity(row: Collision): number {
-  return severities[classWords.indexOf(row.class ?? 'unknown')] ?? 2;
+  return severityOf(row.class ?? 'unknown');
+}
+
+export function severityOf(word: string): number {
+  return severities[classWords.indexOf(word)] ?? 2;
 }
 
 // The number by which collisions of the same class are sorted.
@@ -21,9 +36,19 @@ export function compareWorst(p: Collision, q: Collision): number {
 }
 
 // The colour of a class in lists: those that overlap stand out.
-export function classTone(row: Collision): 'bad' | 'calm' | 'plain' {
-  const value = severity(row);
+export function toneOf(word: string): 'bad' | 'calm' | 'plain' {
+  const value = severityOf(word);
   return value >= 4 ? 'bad' : value === 1 ? 'calm' : 'plain';
+}
+
+// What a class means, and what the search could not know.
+export function explanations(row: Collision): string[] {
+  const texts = [meanings[row.class ?? ''] ?? ''];
+  if (row.open) texts.push(`${openMeanings[row.open]}, so the pair was judged without an inside.`);
+  if (row.depth_kind === 'at_least' && row.depth !== row.depth_at_most) {
+    texts.push('Shapes that are not convex have only bounds of their depth. No shorter motion separates the objects; a motion of the upper bound does.');
+  }
+  return texts.filter(text => text);
 }
 
 export interface Measure {
@@ -50,4 +75,21 @@ export function measureOf(row: Collision, unit = ''): Measure | null {
   if (row.overlap === undefined) return null;
   return row.overlap < 0 ? {kind: 'gap', short: significant(-row.overlap), long: `${withUnit(-row.overlap)} between the boxes`} :
     {kind: 'overlap', short: significant(row.overlap), long: `${withUnit(row.overlap)}, of the boxes`};
+}
+
+// The thickness of the overlap, as a cell of a table.
+export function thicknessOf(row: Collision): string {
+  if (row.thickness === undefined) return row.thickness_kind === 'undecided' ? '?' : '';
+  return `${row.thickness_kind === 'at_most' ? '≤ ' : row.thickness_kind === 'at_least' ? '≥ ' : ''}${significant(row.thickness)}`;
+}
+
+// How many contacts a row has, in words.
+export function contactsText(row: Collision): string {
+  const listed = row.contacts?.length ?? 0;
+  const all = row.contact_count ?? listed;
+  if (all > listed || row.more_contacts) {
+    const of = all > listed ? ` of ${row.more_contacts ? 'more than ' : ''}${all}` : '';
+    return listed === 1 ? `The deepest contact${of}` : `The ${listed} deepest contacts${of || '; more exist'}`;
+  }
+  return listed === 1 ? '1 contact' : `${listed} contacts, the deepest first`;
 }

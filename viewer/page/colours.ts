@@ -23,6 +23,8 @@ export interface Palette {
 export interface LegendEntry {
   text: string;
   colour: Colour;
+  // A sign in place of a patch of the colour.
+  mark?: string;
 }
 
 const light: Palette = {

@@ -12,10 +12,6 @@ export function openHelp(): void {
   else dialog.showModal();
 }
 
-export async function copyLink(app: App): Promise<void> {
-  say(await app.link.copy() ? 'Link copied' : 'The link is in the address bar');
-}
-
 function toggle(settings: Settings, name: 'edges' | 'octants' | 'flip'): void {
   settings.set(name, !settings.values[name]);
 }
@@ -101,7 +97,7 @@ function pageCommands(app: App): Command[] {
     {keys: ['z'], text: 'Panel of objects', run: () => toggleOpen('side')},
     {keys: ['m'], text: 'Panel of view settings', run: () => toggleOpen('options')},
     {keys: ['t'], text: 'Light or dark', run: () => switchTheme(app.settings)},
-    {keys: ['y'], text: 'Copy a link to this view', run: () => void copyLink(app)},
+    {keys: ['y'], text: 'Copy a link to this view', run: () => void app.copyLink()},
     {keys: ['?'], text: 'This help', run: openHelp},
   ];
 }

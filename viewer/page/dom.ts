@@ -42,9 +42,16 @@ export function significant(value: number): string {
   return size !== 0 && (size < 1e-4 || size >= 1e7) ? rounded.toExponential() : rounded.toLocaleString('en-US', {maximumFractionDigits: 8});
 }
 
-// The last part of a path such as "hull/deck/plate", which tells objects apart.
-export function tail(name: string): string {
-  return name.slice(name.lastIndexOf('/', name.length - 2) + 1);
+// The last parts of a path such as "hull/deck/plate", which tell objects apart.
+export function tail(name: string, parts = 1): string {
+  let at = name.length - 1;
+  for (let k = 0; k < parts && at > 0; ++k) at = name.lastIndexOf('/', at - 1);
+  return name.slice(Math.max(at, -1) + 1);
+}
+
+// Paths of objects end with the object itself; what is before is its parent.
+export function pathBefore(name: string): string {
+  return name.slice(0, Math.max(0, name.lastIndexOf('/')));
 }
 
 export function seconds(value: number): string {
@@ -66,6 +73,27 @@ export function plain(value: unknown): string {
   if (typeof value === 'string') return value;
   if (Array.isArray(value)) return value.map(plain).join(', ');
   return JSON.stringify(value) ?? '';
+}
+
+export async function copyText(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text);
+    return true;
+  } catch {
+    return copyOldWay(text);
+  }
+}
+
+// For pages that may not use the clipboard, such as a file.
+function copyOldWay(text: string): boolean {
+  const field = document.createElement('textarea');
+  field.value = text;
+  field.setAttribute('aria-label', 'Copied text');
+  document.body.append(field);
+  field.select();
+  const copied = document.execCommand('copy');
+  field.remove();
+  return copied;
 }
 
 export function later(action: () => void, milliseconds: number): () => void {

@@ -1,6 +1,6 @@
 // Labels over the canvas: what is under the pointer, and the labels of contacts.
 import * as THREE from 'three';
-import {byId, count, counted, make} from './dom.ts';
+import {byId, count, counted, make, significant} from './dom.ts';
 import type {Octant} from './octant_layer.ts';
 import type {Stage} from './stage.ts';
 
@@ -42,4 +42,19 @@ export function placeDepths(stage: Stage): void {
     element.style.left = `${Math.round(Math.min(at.x - box.left + 8, box.width - 6.5 * text.length - 14))}px`;
     element.style.top = `${Math.round(at.y - box.top + 8)}px`;
   });
+}
+
+// A bar as long as a round length at the distance of what the camera looks at.
+export function showScale(stage: Stage, unit: string): void {
+  const {camera, canvas} = stage;
+  const pixels = canvas.clientHeight / (2 * Math.tan(THREE.MathUtils.degToRad(camera.three.fov / 2)) * camera.distance);
+  if (!(pixels > 0 && pixels < Infinity)) return;
+  const most = 130 / pixels;
+  const power = 10 ** Math.floor(Math.log10(most));
+  const length = power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
+  byId('scale').hidden = camera.fly;
+  const bar = byId('scale').firstElementChild as HTMLElement;
+  bar.style.width = `${Math.round(length * pixels)}px`;
+  const text = `${significant(length)}${unit ? ` ${unit}` : ''}`;
+  if (bar.textContent !== text) bar.textContent = text;
 }

@@ -31,7 +31,7 @@ function startSideEdge(): void {
     document.documentElement.style.setProperty('--side', `${allowed}px`);
     edge.setAttribute('aria-valuenow', String(allowed));
   };
-  edge.setAttribute('aria-valuenow', '360');
+  edge.setAttribute('aria-valuenow', String(byId('side').offsetWidth));
   edge.addEventListener('pointerdown', event => edge.setPointerCapture(event.pointerId));
   edge.addEventListener('pointermove', event => edge.hasPointerCapture(event.pointerId) && resize(window.innerWidth - event.clientX));
   edge.addEventListener('keydown', event => {
@@ -44,7 +44,8 @@ function startSideEdge(): void {
 // `changed` is called when panels opened or closed.
 export function startLayout(changed: () => void): void {
   for (const drawer of ['options', 'side'] as const) {
-    setOpen(drawer, !narrow.matches);
+    // The settings would cover a part of the first picture.
+    setOpen(drawer, drawer === 'side' && !narrow.matches);
     byId(`toggle-${drawer}`).addEventListener('click', () => toggleOpen(drawer));
     new MutationObserver(changed).observe(document.documentElement, {attributeFilter: [`data-${drawer}`]});
   }

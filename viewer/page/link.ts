@@ -1,5 +1,5 @@
 // The part of the address after # holds the view: camera, frame, selection and the settings that differ from the start.
-import {later} from './dom.ts';
+import {copyText, later} from './dom.ts';
 import type {Name, Settings} from './settings.ts';
 
 export interface LinkParts {
@@ -60,23 +60,6 @@ export class Link {
     const address = new URL(location.href);
     // A token is for one browser; it is no part of a view.
     address.searchParams.delete('token');
-    try {
-      await navigator.clipboard.writeText(address.href);
-      return true;
-    } catch {
-      return copyOldWay(address.href);
-    }
+    return copyText(address.href);
   }
-}
-
-// For pages that may not use the clipboard, such as a file.
-function copyOldWay(text: string): boolean {
-  const field = document.createElement('textarea');
-  field.value = text;
-  field.setAttribute('aria-label', 'Link');
-  document.body.append(field);
-  field.select();
-  const copied = document.execCommand('copy');
-  field.remove();
-  return copied;
 }

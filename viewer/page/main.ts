@@ -2,15 +2,15 @@
 // Start here to change the page of the viewer.
 import * as THREE from 'three';
 import {App} from './app.ts';
-import {commands, copyLink, openHelp} from './commands.ts';
+import {commands, openHelp} from './commands.ts';
 import {byId, messageOf} from './dom.ts';
 import {Keyboard} from './keyboard.ts';
 import {applyTheme, startLayout, startTheme, switchTheme} from './layout.ts';
 import {type LinkState, readLink} from './link.ts';
 import {LiveFeed, type LiveFrame} from './live_feed.ts';
 import {LiveScene} from './live_scene.ts';
-import {startWithin, tellReport} from './within_report.ts';
 import {hideProgress, say, showBanner, showFailure, showProgress} from './panel.ts';
+import {startPrinting} from './print.ts';
 import {SceneModel} from './scene_model.ts';
 import {showServer} from './server_page.ts';
 import {Settings} from './settings.ts';
@@ -96,7 +96,7 @@ class Page {
     const link = readLink(settings);
     const first = Math.min(link.frame ?? 0, Math.max(view.frames - 1, 0));
     // The data come while the parts of the page start.
-    const rows = early(model.load(this.source));
+    const rows = early(Promise.all([model.load(this.source), this.source.exported ? model.loadRows(this.source) : null]));
     const frame = view.kind === 'live' ? null : early(model.readFrame(this.source, first));
     const worst = frame && link.empty ? early(this.source.collisions(first, firstQuery)) : null;
     this.startTimeline(view);
@@ -110,7 +110,6 @@ class Page {
     await shown.catch(error => first > 0 ? app.showFrame(0) : Promise.reject(error));
     await firstPicture(app);
     const rest = this.readRest(app, link);
-    if (this.source.exported) startWithin(app);
     // The picture stays if the rest cannot be read.
     return rest.catch((error: unknown) => app.fail(error));
   }
@@ -119,7 +118,8 @@ class Page {
     app.stage.setTheme(app.palette());
     new Keyboard(commands(app));
     byId('zoom-all').addEventListener('click', () => app.zoomAll());
-    byId('copy-link').addEventListener('click', () => void copyLink(app));
+    byId('copy-link').addEventListener('click', () => void app.copyLink());
+    startPrinting(app);
     app.stage.resize();
     if (!keepCamera) app.zoomAll();
     offerHooks(app);
@@ -149,7 +149,7 @@ class Page {
     app.startOptions();
     const live = view.kind === 'live';
     await Promise.all([app.followFrame(!app.table.rows.length), live || !this.timeline ? null : this.readTimeline(),
-      view.has.shapes ? this.readShapes(app) : null, app.model.loadRows(this.source)]);
+      view.has.shapes ? this.readShapes(app) : null, app.model.loadRows(this.source).then(() => app.namesArrived())]);
     app.recolour();
     if (link.selected.length) await (link.camera === null ? app.openAll(link.selected) : app.selection.select(link.selected));
     if (live && link.empty) app.selectWorstSoon();
@@ -230,7 +230,7 @@ class Page {
   // Other objects may be shown: their names and groups are read again.
   private readRows(app: App): void {
     const {has} = app.model.view;
-    if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.recolour()).catch(error => app.fail(error));
+    if (has.names || has.groups) app.model.loadRows(this.source).then(() => app.namesArrived()).catch(error => app.fail(error));
   }
 
   // Answers that the server computes on request are asked for once a second, and after the last frame.
@@ -313,5 +313,4 @@ function offerHooks(app: App): void {
 new Page().start().catch(error => {
   // A message of the server is more exact.
   if (!document.documentElement.dataset.failed) showFailure(messageOf(error));
-  tellReport('failed');
 });

@@ -52,9 +52,9 @@ export function showTitle(model: SceneModel): void {
   const {view, frame} = model;
   byId('title').textContent = view.title || 'scene';
   document.title = view.title ? `${view.title} – octopair` : 'octopair';
-  const {pairs, began = 0, ended = 0} = frame.info;
+  const {pairs, began = 0, ended = 0, classes} = frame.info;
   const events = view.has.events || view.kind === 'live' ? `, ${count(began)} began, ${count(ended)} ended` : '';
-  byId('counts').textContent = `${counted(frame.info.objects ?? view.objects, 'object', 'objects')}, ${counted(pairs, 'pair', 'pairs')}${events}`;
+  byId('counts').textContent = `${counted(frame.info.objects ?? view.objects, 'object', 'objects')}, ${counted(pairs, ...(classes ? ['collision', 'collisions'] : ['pair', 'pairs']) as [string, string])}${events}`;
 }
 
 export function showSummary(model: SceneModel): void {
@@ -64,11 +64,18 @@ export function showSummary(model: SceneModel): void {
   if (view.frames > 1) entries.push(['frames', count(view.frames)]);
   if (view.margin) entries.push(['margin', plain(view.margin)]);
   if (view.unit) entries.push(['unit', view.unit]);
-  for (const [name, value] of Object.entries(view.summary)) if (name !== 'seconds' && name !== 'objects') entries.push([words(name), plain(value)]);
+  for (const [name, value] of Object.entries(view.summary)) {
+    if (!['seconds', 'objects', 'pairs'].includes(name)) entries.push([words(name), plain(value)]);
+  }
+  for (const {name, first} of view.files) entries.push(['file', `${name}, from object ${count(first)}`]);
   byId('summary').replaceChildren(definitions(entries));
-  const info: [string, string][] = Object.entries(frame.info).filter(([name]) => name !== 'seconds')
-    .map(([name, value]) => [words(name), plain(value)]);
-  byId('frame-info').replaceChildren(definitions(info));
+  const {classes, seconds: _, pairs, pairs_listed: listed = pairs, frame: number, objects, began, ended, ...numbers} = frame.info;
+  const moves = view.frames > 1 || view.has.events || view.kind === 'live';
+  const info = {...(moves ? {frame: number, objects, began, ended} : {}), [classes ? 'collisions' : 'pairs']: pairs,
+    ...(listed < pairs ? {listed} : {}), ...classes, ...numbers};
+  byId('frame-title').textContent = moves ? 'Frame' : 'Result';
+  byId('frame-info').replaceChildren(definitions(Object.entries(info).filter(([, value]) => value !== undefined)
+    .map(([name, value]) => [words(name), plain(value)])));
   showSeconds({...view.summary.seconds as Record<string, number> | undefined, ...frame.info.seconds});
 }
 
@@ -93,8 +100,8 @@ export function showNotices(notices: readonly string[]): void {
 export function showLegend(entries: readonly LegendEntry[]): void {
   byId('legend').replaceChildren(...entries.map(entry => {
     const item = make('li', entry.text);
-    const swatch = make('span', '', 'swatch');
-    swatch.style.background = css(entry.colour);
+    const swatch = make('span', entry.mark ?? '', entry.mark ? 'mark' : 'swatch');
+    swatch.style[entry.mark ? 'color' : 'background'] = css(entry.colour);
     item.prepend(swatch);
     return item;
   }));

@@ -1,6 +1,7 @@
 // The arrays of the shown objects and of one frame, as they came from the source.
 import {Missing, type Source} from './source.ts';
-import type {Found, FrameInfo, ObjectInfo, Point, View} from './types.ts';
+import {tail} from './dom.ts';
+import type {Collision, DetailColumns, Found, FrameInfo, ObjectInfo, Point, View} from './types.ts';
 
 export const noPairs = new Uint32Array(0);
 
@@ -17,17 +18,24 @@ export interface Frame {
   ended: Uint32Array;
 }
 
+// The details that a file may give of an object, in the order in which the page shows them.
+export const detailNames = ['label', 'type', 'id', 'parent', 'level', 'material'] as const;
+export type DetailName = typeof detailNames[number];
+
 export class SceneModel {
   rows = 0;
   objects: Uint32Array | null = null;
   groups: Uint32Array | null = null;
   geometry: Uint32Array | null = null;
   names: string[] | null = null;
+  details: DetailColumns | null = null;
   frame: Frame = {
     info: {frame: 0, pairs: 0}, boxes: new Float32Array(0), poses: null, partners: noPairs, classes: null, levels: null, pairs: noPairs, began: noPairs,
     ended: noPairs,
   };
   private rowsByObject: Map<number, number> | null = null;
+  // The number of objects of each label.
+  private labels: Map<string, number> | null = null;
 
   constructor(readonly view: View) {
     this.rows = view.shown;
@@ -53,6 +61,55 @@ export class SceneModel {
   nameOf(object: number): string {
     const row = this.rowOf(object);
     return row >= 0 ? this.names?.[row] ?? '' : '';
+  }
+
+  // A detail of an object; empty if it is not known.
+  detailOf(object: number, detail: DetailName): string {
+    const column = this.details?.[detail] as readonly number[] | undefined;
+    return column ? this.details!.words[column[this.rowOf(object)] ?? 0]! : '';
+  }
+
+  hasDetail(detail: DetailName): boolean {
+    return this.details?.[detail] !== undefined;
+  }
+
+  // What people call an object: its label, or the end of its name, or its number. Labels that several objects have get more of the path, or
+  // the number.
+  labelOf(object: number, name = this.nameOf(object)): string {
+    const label = this.detailOf(object, 'label') || tail(name);
+    if (!label) return `object ${this.numberOf(object)}`;
+    if (!this.isShared(label)) return label;
+    const longer = this.detailOf(object, 'label') ? label : tail(name, 2);
+    return longer === label || this.isShared(longer) ? `${label} #${this.numberOf(object)}` : longer;
+  }
+
+  // Whether several objects have this label, or this end of their name.
+  private isShared(label: string): boolean {
+    if (!this.labels) {
+      this.labels = new Map();
+      for (let row = 0; row < this.rows; ++row) {
+        const own = this.detailOf(this.objectOf(row), 'label');
+        const name = this.names?.[row] ?? '';
+        for (const text of new Set(own ? [own] : [tail(name), tail(name, 2)])) this.labels.set(text, (this.labels.get(text) ?? 0) + 1);
+      }
+    }
+    return (this.labels.get(label) ?? 0) > 1;
+  }
+
+  // The label of an object of a collision, which may be gone or not be drawn.
+  sideLabel(row: Collision, side: 'a' | 'b'): string {
+    return row[`label_${side}`] || (row[side] < 0 ? tail(row[`name_${side}`] ?? '') : this.labelOf(row[side], row[`name_${side}`] ?? this.nameOf(row[side])));
+  }
+
+  // The number of an object in results, which number the second set of a search from 0.
+  numberOf(object: number): number {
+    const second = this.view.second_set ?? Infinity;
+    return object < second ? object : object - second;
+  }
+
+  // The file of an object, if there are several.
+  fileOf(object: number): string {
+    return this.view.files.filter(file => file.first <= object).pop()?.name ?? '';
   }
 
   exists(row: number): boolean {
@@ -90,11 +147,12 @@ export class SceneModel {
   search(text: string, limit: number): Found {
     const lower = text.toLowerCase();
     const result: Found = {total: 0, found: []};
-    this.names?.forEach((name, row) => {
-      if (!name.toLowerCase().includes(lower)) return;
+    for (let row = 0; row < this.rows; ++row) {
+      const object = this.objectOf(row);
+      if (![this.names?.[row] ?? '', ...detailNames.map(detail => this.detailOf(object, detail))].some(word => word.toLowerCase().includes(lower))) continue;
       result.total += 1;
-      if (result.found.length < limit) result.found.push({index: this.objectOf(row), name});
-    });
+      if (result.found.length < limit) result.found.push({index: object, name: this.nameOf(object)});
+    }
     return result;
   }
 
@@ -104,6 +162,8 @@ export class SceneModel {
     const partners = this.partnersOf(object);
     const info: ObjectInfo = {index: object, row, name: this.nameOf(object), partners, partner_count: partners.length};
     if (row < 0) return info;
+    const details = detailNames.map(detail => [detail, this.detailOf(object, detail)] as const).filter(([, text]) => text);
+    if (details.length) info.details = Object.fromEntries(details);
     info.partner_count = Math.max(this.frame.partners[row] ?? 0, partners.length);
     if (this.frame.levels) info.level = this.frame.levels[row];
     if (this.groups) info.groups = this.groups[row];
@@ -124,9 +184,11 @@ export class SceneModel {
 
   async loadRows(source: Source): Promise<void> {
     const {has} = this.view;
-    [this.groups, this.names] = await Promise.all([
+    [this.groups, this.names, this.details] = await Promise.all([
       words(source, 'groups.u32', has.groups), has.names ? orNull(source.json<string[]>('names.json')) : null,
+      has.details ? orNull(source.json<DetailColumns>('details.json')) : null,
     ]);
+    this.labels = null;
   }
 
   // Reads what the picture of a frame needs. Pairs and levels come later.

@@ -72,7 +72,12 @@ export class Search {
     byId('found-total').textContent = found.total === 0 ? 'Nothing found' : counted(found.total, 'object', 'objects');
     byId('found-list').replaceChildren(...found.found.map(entry => {
       const item = make('li');
-      item.append(button(entry.name ? `${entry.index} ${entry.name}` : String(entry.index), () => this.choose(entry.index)));
+      const about = [this.model.detailOf(entry.index, 'type'), this.model.detailOf(entry.index, 'level')].filter(text => text).join(' · ');
+      const choose = button(entry.name ? `${this.model.numberOf(entry.index)} ${this.model.labelOf(entry.index, entry.name)}` : String(entry.index),
+        () => this.choose(entry.index));
+      choose.title = entry.name;
+      if (about) choose.append(make('small', about));
+      item.append(choose);
       return item;
     }));
   }

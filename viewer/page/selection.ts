@@ -1,5 +1,5 @@
 // The selected objects: one, or the two of a pair.
-import {counted, isAbort, tail} from './dom.ts';
+import {counted, isAbort} from './dom.ts';
 import {isOpen} from './layout.ts';
 import {say, speak} from './panel.ts';
 import type {SceneModel} from './scene_model.ts';
@@ -13,6 +13,7 @@ export interface SelectionActions {
   zoom(): void;
   onlySelection(): void;
   section(): void;
+  copyLink(): void;
   place(): Point | null;
 }
 
@@ -34,6 +35,22 @@ export class Selection {
 
   get isPair(): boolean {
     return this.objects.length === 2;
+  }
+
+  // Shows a collision of an older result. Its objects may no longer exist, so nothing is selected.
+  showGone(row: Collision): void {
+    this.objects = [];
+    this.partners = [];
+    this.collision = null;
+    this.request += 1;
+    this.panel.showPair({objects: [-1, -1], row, listed: true});
+    this.actions.changed();
+  }
+
+  // Shows the panel again, with names that have come.
+  namesArrived(): void {
+    if (this.isPair) this.panel.showPair(this.pairView());
+    else if (this.info) this.panel.showObject(this.info);
   }
 
   // Selects a pair before anything is drawn: nothing changes on the page yet but the panel.
@@ -88,7 +105,7 @@ export class Selection {
 
   private async readPair([object, other]: number[]): Promise<Collision | null> {
     try {
-      const answer = await this.source.collisions(this.model.frame.info.frame, {from: 0, count: 1, sort: 'pair', object, with: other});
+      const answer = await this.source.collisions(this.model.frame.info.frame, {from: 0, count: 1, sort: 'worst', object, with: other});
       this.listed = !answer.partial;
       return answer.rows[0] ?? null;
     } catch (error) {
@@ -109,19 +126,20 @@ export class Selection {
 
   private pairView(): PairView {
     const {listed} = this;
-    return {objects: [this.objects[0]!, this.objects[1]!], row: this.collision, names: [this.nameOf(0), this.nameOf(1)], listed};
+    return {objects: [this.objects[0]!, this.objects[1]!], row: this.collision, listed};
   }
 
-  // The name of the first or second object of a pair. Objects that are not drawn have their names in the row.
-  nameOf(which: number): string {
+  // The label of a selected object. Objects that are not drawn have their names in the row.
+  labelOf(which: number): string {
     const object = this.objects[which]!;
     const row = this.collision;
-    return this.model.nameOf(object) || (row?.a === object ? row.name_a : row?.b === object ? row.name_b : '') || '';
+    if (row && (row.a === object || row.b === object)) return this.model.sideLabel(row, row.a === object ? 'a' : 'b');
+    return this.model.labelOf(object);
   }
 
   // Says what is selected. With a closed panel nothing else names the selection.
   private tell(): void {
-    const names = this.objects.map((object, k) => `${object} ${tail(this.nameOf(k))}`.trim()).join(' and ');
+    const names = this.objects.map((_, k) => this.labelOf(k)).join(' and ');
     const word = this.collision?.class ? `, ${this.collision.class}` : '';
     const more = this.info ? `, ${counted(this.info.partner_count, 'partner', 'partners')}` : word;
     (isOpen('side') ? speak : say)(`${names} selected${more}`);

@@ -37,10 +37,16 @@ uniform vec3 eye;
 uniform vec3 cutLow;
 uniform vec3 cutHigh;
 uniform int drawPass;
+uniform vec3 target;
+uniform float fadeReach;
 flat in vec4 tint;
 in vec3 world;
 out vec4 colour;
 ${screenDoor}
+// How much of a ghost is seen: many in front of each other, far from what the camera looks at, would hide it.
+float ghostShare(float reach) {
+  return 1.0 - smoothstep(0.1, reach, distance(world, target) / fadeReach);
+}
 void cutOff() {
   if (any(lessThan(world, cutLow)) || any(greaterThan(world, cutHigh))) discard;
   if (drawPass == 0) screenDoor(tint.a);
@@ -69,7 +75,7 @@ void main() {
   if (drawPass > 0) {
     // Like glass: faint where the surface faces the eye, and strong at its outline.
     float turned = pow(1.0 - abs(dot(normal, normalize(eye - world))), 2.5);
-    colour = drawPass == 1 ? vec4(tint.rgb, 0.04 + 0.22 * turned) : vec4(tint.rgb, 0.1 + 0.5 * turned);
+    colour = drawPass == 1 ? vec4(tint.rgb, (0.04 + 0.18 * turned) * ghostShare(0.8)) : vec4(tint.rgb, 0.1 + 0.5 * turned);
     return;
   }
   vec3 weight = normal * normal;
@@ -90,7 +96,7 @@ const edgeFragment = `${cutting}
 uniform vec3 edgeColour;
 void main() {
   cutOff();
-  colour = vec4(mix(tint.rgb, edgeColour, 0.4), drawPass == 0 ? 1.0 : drawPass == 1 ? 0.15 : 0.4);
+  colour = vec4(mix(tint.rgb, edgeColour, 0.4), drawPass == 0 ? 1.0 : drawPass == 1 ? 0.13 * ghostShare(0.32) : 0.1 + 0.3 * ghostShare(0.25));
 }
 `;
 
@@ -131,6 +137,7 @@ export interface Shape {
 interface Part {
   kind: string;
   shape: Shape;
+  // Those of the solid pass, then those of glass, then ghosts, then hidden ones. So a pass draws only the first instances.
   rows: Uint32Array;
   // The faces, and later the edges.
   objects: (THREE.Mesh | THREE.LineSegments)[];
@@ -138,8 +145,13 @@ interface Part {
   tints: THREE.InstancedBufferAttribute;
   // The number of rows in each pass.
   inPass: number[];
+  // The rows up to the last one of each pass.
+  upTo: number[];
+  // The most instances that a picture draws.
+  limit: number;
 }
 
+const passOrder = [Pass.solid, Pass.glass, Pass.ghost];
 export const shapeLimit = 4000;
 export const triangleLimit = 4_000_000;
 // Normals and edges of more triangles take too long.
@@ -152,6 +164,7 @@ export class ShapeLayer {
   leftOut = 0;
   // Instances that are not hidden.
   visible = 0;
+  instances = 0;
   private readonly parts: Part[] = [];
   private readonly faces: THREE.RawShaderMaterial;
   private readonly lines: THREE.RawShaderMaterial;
@@ -172,7 +185,8 @@ export class ShapeLayer {
     const {shapes} = await source.json<{shapes: {kind: string; vertices: number; triangles: number}[]}>('shapes.json');
     const rows = rowsByShape(model.geometry!);
     let triangles = 0;
-    const wanted = [...rows.keys()].sort((a, b) => a - b).filter(k => {
+    const collides = (k: number): boolean => rows.get(k)!.some(row => model.frame.partners[row]);
+    const wanted = [...rows.keys()].sort((a, b) => Number(collides(b)) - Number(collides(a)) || a - b).filter(k => {
       triangles += (shapes[k]?.triangles ?? 0) * rows.get(k)!.length;
       return k < shapes.length && triangles <= triangleLimit;
     }).slice(0, shapeLimit);
@@ -222,6 +236,9 @@ export class ShapeLayer {
 
   // Chooses the shapes of a pass.
   setPass(pass: number): void {
+    for (const part of this.parts) {
+      for (const object of part.objects) (object.geometry as THREE.InstancedBufferGeometry).instanceCount = Math.min(part.upTo[pass]!, part.limit);
+    }
     for (const material of [this.faces, this.lines]) setBlending(material, pass !== Pass.solid);
     // Glass with its far side would be too dim.
     this.faces.side = pass === Pass.glass ? THREE.FrontSide : THREE.DoubleSide;
@@ -231,8 +248,7 @@ export class ShapeLayer {
   // Draws a share of the instances while the camera moves. Shapes with one instance are drawn or left out as a whole.
   choose(share: number): void {
     this.parts.forEach((part, k) => {
-      const count = share === 1 ? part.rows.length : Math.floor(part.rows.length * share + 0.618 * k % 1);
-      for (const object of part.objects) (object.geometry as THREE.InstancedBufferGeometry).instanceCount = count;
+      part.limit = share === 1 ? part.rows.length : Math.floor(part.rows.length * share + 0.618 * k % 1);
     });
   }
 
@@ -252,7 +268,8 @@ export class ShapeLayer {
     const rows = Uint32Array.from(rowList);
     const poses = new THREE.InstancedInterleavedBuffer(new Float32Array(12 * rows.length), 12);
     const tints = new THREE.InstancedBufferAttribute(new Uint8Array(4 * rows.length), 4, true);
-    const part: Part = {kind, shape, rows, objects: [], poses, tints, inPass: [rows.length, 0, 0]};
+    const part: Part = {kind, shape, rows, objects: [], poses, tints, inPass: [rows.length, 0, 0], upTo: [rows.length, 0, 0], limit: rows.length};
+    this.instances += rows.length;
     const geometry = this.geometry(part, shape.vertices);
     geometry.setIndex(new THREE.BufferAttribute(shape.triangles, 1));
     if (kind === 'plane') geometry.setAttribute('across', planeCoordinates(shape.vertices));
@@ -284,6 +301,7 @@ export class ShapeLayer {
   private tint(part: Part): void {
     if (!this.colours.length) return;
     part.inPass.fill(0);
+    this.arrange(part);
     part.rows.forEach((row, k) => {
       (part.tints.array as Uint8Array).set(this.colours.subarray(4 * row, 4 * row + 4), 4 * k);
       const pass = passOf(this.colours[4 * row + 3]!);
@@ -292,6 +310,22 @@ export class ShapeLayer {
       part.inPass[pass]! += 1;
     });
     part.tints.needsUpdate = true;
+    let before = 0;
+    for (const pass of passOrder) part.upTo[pass] = before += part.inPass[pass]!;
+  }
+
+  // Puts the rows into the order of their passes.
+  private arrange(part: Part): void {
+    if (part.rows.length === 1) return;
+    const passes: number[][] = [[], [], [], []];
+    for (const row of part.rows) {
+      const at = passOrder.indexOf(passOf(this.colours[4 * row + 3]!) as 0 | 1 | 2);
+      passes[at < 0 ? 3 : at]!.push(row);
+    }
+    const sorted = Uint32Array.from(passes.flat());
+    if (sorted.every((row, k) => row === part.rows[k])) return;
+    part.rows = sorted;
+    this.place(part);
   }
 }
 

@@ -1,5 +1,4 @@
 // Reads the addresses of the protocol, from the server or from the elements of an exported page. Callers see no difference.
-import {compareWorst} from './collision.ts';
 import {isAbort} from './dom.ts';
 import type {Collision, CollisionQuery, Collisions} from './types.ts';
 
@@ -12,6 +11,8 @@ export interface Source {
   bytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer>;
   json<T>(address: string, signal?: AbortSignal): Promise<T>;
   collisions(frame: number, query: CollisionQuery, signal?: AbortSignal): Promise<Collisions>;
+  // The worst rows of a frame, as many as the page can have (protocol.md).
+  all(frame: number, signal?: AbortSignal): Promise<Collisions>;
 }
 
 export type ByteCounter = (address: string, got: number, total: number) => void;
@@ -40,6 +41,10 @@ export class ServerSource implements Source {
     for (const name of ['object', 'with'] as const) if (query[name] !== undefined) parameters.set(name, String(query[name]));
     if (query.q) parameters.set('q', query.q);
     return this.json(`collisions/${frame}.json?${parameters}`, signal);
+  }
+
+  all(frame: number, signal?: AbortSignal): Promise<Collisions> {
+    return this.collisions(frame, {from: 0, count: 200_000, sort: 'worst'}, signal);
   }
 
   // Reads the body piece by piece only if it is large, so that progress can be shown.
@@ -82,28 +87,19 @@ export class ExportSource implements Source {
     return JSON.parse(new TextDecoder().decode(await this.bytes(address))) as T;
   }
 
-  async collisions(frame: number, query: CollisionQuery): Promise<Collisions> {
+  all(frame: number): Promise<Collisions> {
     let table = this.tables.get(frame);
     if (!table) this.tables.set(frame, table = this.json<Collisions>(`collisions/${frame}.json`));
-    const {total, rows} = await table;
-    const selected = selectCollisions(rows, query);
-    const all = query.object === undefined && !query.q;
-    return {total: all ? Math.max(total, rows.length) : selected.length, rows: selected.slice(query.from, query.from + query.count),
-      partial: total > rows.length};
+    return table;
   }
-}
 
-// Filters and sorts the rows as the server does.
-export function selectCollisions(rows: Collision[], query: CollisionQuery): Collision[] {
-  const lower = (query.q ?? '').toLowerCase();
-  const fits = (row: Collision): boolean => !lower || String(row.a) === lower || String(row.b) === lower ||
-    (row.name_a ?? '').toLowerCase().includes(lower) || (row.name_b ?? '').toLowerCase().includes(lower);
-  const has = (row: Collision, object: number | undefined): boolean => object === undefined || row.a === object || row.b === object;
-  const kept = rows.filter(row => has(row, query.object) && has(row, query.with) && fits(row));
-  const byPair = (p: Collision, q: Collision): number => p.a - q.a || p.b - q.b;
-  if (query.sort === 'worst') return kept.sort(compareWorst);
-  if (query.sort === 'began') return kept.sort((p, q) => Number(q.change === 'began') - Number(p.change === 'began') || byPair(p, q));
-  return kept.sort(byPair);
+  // The rows of an object or a pair, or all, the worst first, which is their order in the page.
+  async collisions(frame: number, {object, with: other, from, count}: CollisionQuery): Promise<Collisions> {
+    const {total, rows} = await this.all(frame);
+    const has = (row: Collision, which: number | undefined): boolean => which === undefined || row.a === which || row.b === which;
+    const kept = rows.filter(row => has(row, object) && has(row, other));
+    return {total: object === undefined ? total : kept.length, rows: kept.slice(from, from + count), partial: total > rows.length};
+  }
 }
 
 // The elements of an exported page, if it is one.

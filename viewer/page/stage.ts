@@ -229,8 +229,8 @@ export class Stage {
     });
   }
 
-  // Draws the whole scene small into another canvas, from a direction. Returns where a point is there.
-  drawOverview(target: HTMLCanvasElement, view: {yaw: number; pitch: number}, point: THREE.Vector3): [number, number] {
+  // Draws the whole scene small into another canvas, from a direction. Returns where points are there.
+  drawOverview(target: HTMLCanvasElement, view: {yaw: number; pitch: number}, points: readonly THREE.Vector3[]): [number, number][] {
     const ratio = this.renderer.getPixelRatio();
     const [width, height] = [Math.min(target.clientWidth, this.canvas.clientWidth), Math.min(target.clientHeight, this.canvas.clientHeight)];
     const camera = this.camera.forOverview(view, width / height);
@@ -243,8 +243,10 @@ export class Stage {
     [target.width, target.height] = [Math.round(width * ratio), Math.round(height * ratio)];
     const size = [target.width, target.height] as const;
     target.getContext('2d')!.drawImage(this.canvas, 0, this.canvas.height - target.height, ...size, 0, 0, ...size);
-    const at = point.clone().project(camera.three);
-    return [0.5 * (at.x + 1) * target.width, 0.5 * (1 - at.y) * target.height];
+    return points.map(point => {
+      const at = point.clone().project(camera.three);
+      return [0.5 * (at.x + 1) * target.width, 0.5 * (1 - at.y) * target.height];
+    });
   }
 
   private rest(): void {

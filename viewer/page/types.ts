@@ -18,6 +18,15 @@ export interface Has {
   near: boolean;
   rows: boolean;
   boxes: boolean;
+  details: boolean;
+  gone: boolean;
+  octants: boolean;
+}
+
+export interface SceneFile {
+  name: string;
+  // Its first object.
+  first: number;
 }
 
 export interface View {
@@ -32,6 +41,10 @@ export interface View {
   up: string;
   unit: string;
   margin: number;
+  // The files that the objects are from, if there are several.
+  files: SceneFile[];
+  // The first object of the second set, if each pair has one object of each set. Results number both sets from 0.
+  second_set?: number;
   has: Has;
   notices: string[];
   summary: Record<string, unknown>;
@@ -45,6 +58,12 @@ export interface FrameInfo {
   pairs_listed?: number;
   began?: number;
   ended?: number;
+  // The number of collisions of each class.
+  classes?: Record<string, number>;
+  // The number of collisions that are new, the same or gone since an older result.
+  new?: number;
+  same?: number;
+  gone?: number;
   seconds?: Record<string, number>;
 }
 
@@ -55,7 +74,11 @@ export interface Contact {
   depth?: number;
 }
 
-export interface Collision {
+// Texts about the objects of a collision that is gone.
+type GoneTexts = {[key in `${'label' | 'type' | 'id'}_${'a' | 'b'}`]?: string};
+
+// A row of the table. A collision that is gone has the objects -1, and only texts about them.
+export interface Collision extends GoneTexts {
   a: number;
   b: number;
   name_a?: string;
@@ -65,12 +88,22 @@ export interface Collision {
   // "least", or "at_least" if the depth is a lower bound; then perhaps with an upper bound.
   depth_kind?: string;
   depth_at_most?: number;
+  // The diameter of the largest ball inside both objects: "at_most" or "at_least" this, or "undecided".
+  thickness?: number;
+  thickness_kind?: string;
+  // The objects that are meshes with a part that is not closed: "a", "b" or "ab".
+  open?: string;
+  // The time of impact of objects that move.
+  time?: number;
   distance?: number;
   // Of the boxes, if no exact test computed a depth. Negative for a gap.
   overlap?: number;
   change?: string;
   // The deepest first.
   contacts?: Contact[];
+  // The number of contacts, if the row has only some.
+  contact_count?: number;
+  // Whether the search left out further contacts.
   more_contacts?: boolean;
   // The boxes of both objects, if one of them is not shown.
   boxes?: [Bounds, Bounds];
@@ -93,6 +126,12 @@ export interface CollisionQuery {
   // Only pairs of `object` with this one.
   with?: number;
   q?: string;
+}
+
+// The words of the details, and for each detail the words of all shown objects.
+export interface DetailColumns {
+  words: string[];
+  [detail: string]: readonly string[] | readonly number[];
 }
 
 export interface ObjectInfo {
@@ -162,9 +201,9 @@ export interface SocketEvent {
 // Fills in all that an answer may leave out.
 export function completeView(answer: Partial<View>): View {
   const none: Has = {names: false, groups: false, shapes: false, contacts: false, classes: false, events: false, search: false, near: false, rows: false,
-    boxes: true};
+    boxes: true, details: false, gone: false, octants: true};
   return {
-    version: '', title: '', kind: 'scene', objects: 0, frames: 1, origin: [0, 0, 0], up: '', unit: '', margin: 0, notices: [], summary: {},
+    version: '', title: '', kind: 'scene', objects: 0, frames: 1, origin: [0, 0, 0], up: '', unit: '', margin: 0, files: [], notices: [], summary: {},
     ...answer, shown: answer.shown ?? answer.objects ?? 0,
     bounds: answer.bounds ?? {min: [0, 0, 0], max: [1, 1, 1]}, has: {...none, ...answer.has},
   };

@@ -12,13 +12,6 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
         systemd OCTOPAIR_WITH_SYSTEMD
         viewer OCTOPAIR_WITH_VIEWER)
 
-# node and npm, which are in one folder, make the page of the viewer. npm fetches libraries from its registry.
-if("viewer" IN_LIST FEATURES)
-    vcpkg_find_acquire_program(NODEJS)
-    get_filename_component(NODEJS_FOLDER "${NODEJS}" DIRECTORY)
-    vcpkg_add_to_path("${NODEJS_FOLDER}")
-endif()
-
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" dynamic SHARED)
 
 # The worker program is a tool: vcpkg allows no programs in other folders.

@@ -17,6 +17,8 @@
 
 namespace octopair::cli {
 
+namespace {
+
 void add_objects_option(Command& command, DetectRequest& request) {
     command
         .add_option(
@@ -37,10 +39,11 @@ void add_margin_option(Command& command, DetectRequest& request) {
         .type_name("M");
 }
 
-void add_scene_options(Command& command, DetectRequest& request) {
+}  // namespace
+
+void add_scene_options(Command& command, DetectRequest& request, const std::string& inputs) {
     command.begin_section("Input");
-    command.add_option("INPUT", request.inputs, ".npy, .csv, .json or mesh files; several files form one set")
-        .required();
+    command.add_option("INPUT", request.inputs, inputs).required();
     command.add_option("--against", request.against, "only pairs of an object of INPUT and an object of FILE")
         .type_name("FILE");
     add_objects_option(command, request);
@@ -76,8 +79,10 @@ Option add_output_option(Command& command, std::string& output, const char* form
 namespace {
 
 void add_what(Command& command, DetectRequest& request) {
-    add_scene_options(command, request);
-    add_stage_options(command, request.pipeline);
+    add_scene_options(command, request, ".npy, .csv, .json or mesh files; several files form one set");
+    add_stage_options(
+        command, request.pipeline,
+        "last stage: pairs of boxes, objects that meet (default for meshes and .json), features (contacts)");
     command.add_flag("--events", request.events,
                      "of a moving scene: only pairs that begin or end, as rows frame,event,a,b");
     command.begin_section("Exact stages");

@@ -10,15 +10,11 @@
 
 namespace octopair::cli {
 
-/// Add --objects and --margin.
-void add_objects_option(Command& command, DetectRequest& request);
-void add_margin_option(Command& command, DetectRequest& request);
-
 /// Adds --output. `formats`: the endings of its formats, for the help.
 Option add_output_option(Command& command, std::string& output, const char* formats);
 
-/// Adds INPUT, --against, --objects, --margin and --padding, in the sections "Input" and "What counts".
-void add_scene_options(Command& command, DetectRequest& request);
+/// Adds INPUT, --against, --objects, --margin and --padding, in the sections "Input" and "What counts". `inputs` is the help text of INPUT.
+void add_scene_options(Command& command, DetectRequest& request, const std::string& inputs);
 
 /// Adds --order and --limit. `limited` is the help text of --limit.
 void add_order_options(Command& command, DetectRequest& request, const std::string& limited);

@@ -106,10 +106,20 @@ void add_up_option(Command& command, PipelineRequest& request, const std::string
         .type_name("AXIS");
 }
 
-void add_stage_options(Command& command, PipelineRequest& request) {
-    add_stage_option(
-        command, request,
-        "last stage: pairs of boxes, objects that meet (default for meshes and .json), features (contacts)");
+void add_unit_option(Command& command, PipelineRequest& request, const std::string& description) {
+    command
+        .add_option(
+            "--unit",
+            [&request](const std::string& word) {
+                check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
+                request.space.unit = word;
+            },
+            description)
+        .type_name("UNIT");
+}
+
+void add_stage_options(Command& command, PipelineRequest& request, const std::string& description) {
+    add_stage_option(command, request, description);
     command
         .add_option("--exclude", request.exclude,
                     "leave out pairs by rules on names or relations, see docs/formats.md; or fills,assembly,system")
@@ -166,15 +176,9 @@ void add_report_options(Command& command, PipelineRequest& request) {
     command.add_option("--report", request.report, "write an HTML page about the collisions").type_name("FILE.html");
     add_up_option(command, request,
                   "axis that points up in the report and in BCF: y or z (default: that of the file, or z)");
-    command
-        .add_option(
-            "--unit",
-            [&request](const std::string& word) {
-                check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
-                request.space.unit = word;
-            },
-            "unit of lengths in the report and in BCF: mm, cm, dm, m, km, in or ft (default: that of the file)")
-        .type_name("UNIT");
+    add_unit_option(
+        command, request,
+        "unit of lengths in the report and in BCF: mm, cm, dm, m, km, in or ft (default: that of the file)");
 }
 
 std::optional<std::string> input_of_boxes(const DetectRequest& request) {
@@ -328,14 +332,12 @@ void check_outcome_options(const DetectRequest& request) {
 
 }  // namespace
 
-void check_pipeline_options(const DetectRequest& request) {
+void check_search_options(const DetectRequest& request) {
     const std::optional<std::string> boxes = input_of_boxes(request);
     if (boxes && request.mesh_objects == io::MeshObjects::triangle)
         refuse(fmt::format("--objects triangle: {} has only boxes, no triangles", *boxes));
     check_exact_options(request);
     check_classes(request);
-    check_bcf_output(request);
-    check_outcome_options(request);
     if (!has_filters(request)) return;
     const std::string asked = filter_option(request);
     if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");
@@ -343,6 +345,12 @@ void check_pipeline_options(const DetectRequest& request) {
     if (request.events) refuse(asked + ": not with --events");
     if (stage_of(request) == Stage::pairs) return;
     if (boxes) refuse(fmt::format("{}: {} has only boxes, no shapes; use --stage pairs", asked, *boxes));
+}
+
+void check_pipeline_options(const DetectRequest& request) {
+    check_search_options(request);
+    check_bcf_output(request);
+    check_outcome_options(request);
 }
 
 }  // namespace octopair::cli

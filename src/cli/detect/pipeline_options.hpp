@@ -44,12 +44,13 @@ std::vector<std::string_view> stage_names();
 /// Returns the words of classes, with commas: the value of --classes in a fixed order.
 std::string class_list(const ClassSet& classes);
 
-/// Add --stage and --up. `description` is the help text.
+/// Add --stage, --up and --unit. `description` is the help text.
 void add_stage_option(Command& command, PipelineRequest& request, const std::string& description);
 void add_up_option(Command& command, PipelineRequest& request, const std::string& description);
+void add_unit_option(Command& command, PipelineRequest& request, const std::string& description);
 
-/// Adds --stage, --exclude and --same-parent.
-void add_stage_options(Command& command, PipelineRequest& request);
+/// Adds --stage, --exclude and --same-parent. `description` is the help text of --stage.
+void add_stage_options(Command& command, PipelineRequest& request, const std::string& description);
 
 /// Adds the options of the exact stages: --adjacent, --max-contacts, --tolerance, --duplicate-tolerance, --min-depth, --classes
 /// and --weld.
@@ -75,7 +76,9 @@ double tolerance_of(const DetectRequest& request, const SetPair& sets);
 /// Returns whether the request needs filters.
 bool has_filters(const DetectRequest& request);
 
-/// Throws: Error{usage} for options that do not fit together.
+/// Throws: Error{usage} for options of the search that do not fit together.
+void check_search_options(const DetectRequest& request);
+/// Throws: as check_search_options(), also for --baseline, --report, --up and --unit.
 void check_pipeline_options(const DetectRequest& request);
 
 }  // namespace octopair::cli

@@ -186,7 +186,9 @@ std::unique_ptr<FoundWriter> make_collisions(const DetectRequest& request, const
     } else {
         collisions->add(make_rows(request, sets, form, stop));
     }
-    if (!asked.report.empty()) collisions->add(make_report(request, sets, form));
+#ifdef OCTOPAIR_WITH_PIPELINE
+    if (!asked.report.empty()) collisions->add(make_report(request, sets));
+#endif
     return collisions;
 }
 

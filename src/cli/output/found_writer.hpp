@@ -53,7 +53,6 @@ io::SceneSpace space_of_result(const DetectRequest& request, const FoundIn& sets
 
 /// Makes the HTML report of --report (report_page.cpp). The report has no measured times, so equal results give equal bytes. Borrows the
 /// request and the sets.
-std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
-                                                 const io::CollisionForm& form);
+std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets);
 
 }  // namespace octopair::cli

@@ -1,8 +1,8 @@
-// The HTML report of `octopair detect --report` (make_report() in found_writer.hpp), with the viewer's page in it.
+// The HTML report of `octopair detect --report` (make_report() in found_writer.hpp): the page of the viewer with the collisions of the run.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <array>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -10,160 +10,204 @@
 #include <utility>
 #include <vector>
 
-#include "cli/detect/pipeline_options.hpp"
-#include "cli/input/search_inputs.hpp"
 #include "cli/output/found_writer.hpp"
+#include "cli/view/shown_scene.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/json/json_fields.hpp"
+#include "io/json/json_text.hpp"
+#include "io/results/collision_columns.hpp"
 #include "io/results/collision_writer.hpp"
-#include "io/results/html_report.hpp"
-#ifdef OCTOPAIR_WITH_VIEWER
-#include "cli/view/view.hpp"
 #include "octopair/error.hpp"
 #include "viewer/scene/page_file.hpp"
-#endif
 
 namespace octopair::cli {
 
 namespace {
 
-std::string joined(const std::vector<std::string>& words) {
-    std::string all;
-    for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-    return all;
-}
-
-#ifdef OCTOPAIR_WITH_VIEWER
-/// The viewer's page for a report: the objects of the inputs, and the collisions of the report.
-class ReportView {
-public:
-    /// Borrows the request and the sets. `second` is null unless the result is of a join. Then the objects of the second set have
-    /// the numbers after those of the first.
-    ReportView(const DetectRequest& request, const InputSet& first, const InputSet* second);
-
-    /// Adds collisions. Only the first 200,000 are kept.
-    void add(std::span<const Pair> pairs, std::span<const Finding> findings);
-    /// Returns the page, compressed by gzip and in base64. Empty if it would be too large.
-    std::string page() const;
-
-private:
-    const DetectRequest& request_;
-    const InputSet& first_;
-    const InputSet* second_;
-    std::vector<Pair> pairs_;
-    std::vector<Finding> findings_;
-};
-
-constexpr std::size_t max_collisions = 200'000;
-constexpr std::uint64_t max_report_bytes = std::uint64_t(32) << 20;  ///< maximum size of the uncompressed page
+using viewer::SceneContents;
 
 /// FrameFinder that returns the collisions of the report, without a search.
 class KnownFrame final : public viewer::FrameFinder {
 public:
-    explicit KnownFrame(viewer::FrameData data) : data_(std::move(data)) {}
+    explicit KnownFrame(const viewer::FrameData& data) : data_(data) {}
     std::uint64_t frames() const override { return 1; }
     viewer::FrameData find(std::uint64_t, const ProgressSink&) override { return data_; }
 
 private:
-    viewer::FrameData data_;
+    const viewer::FrameData& data_;
 };
 
-/// Returns the boxes of both sets in float64.
-std::vector<Box3d> all_boxes(const InputSet& first, const InputSet* second) {
-    std::vector<Box3d> all;
-    for (const InputSet* set : {&first, second}) {
-        if (set == nullptr) continue;
-        const Boxes boxes = set->frame(0).boxes;
-        for (std::size_t i = 0; i < set->scene.objects; ++i) all.push_back(viewer::box_of(boxes, i));
-    }
-    return all;
+/// A collision of the report, and its position in the result.
+struct ReportRow {
+    std::uint64_t number;
+    Pair pair;
+    Finding finding;
+    std::string_view change;
+};
+
+bool is_worse(const ReportRow& p, const ReportRow& q) {
+    const viewer::Severity x = viewer::severity_of(p.finding), y = viewer::severity_of(q.finding);
+    return x != y ? x > y : p.number < q.number;
 }
 
-/// Appends the objects of a second set.
-void append(viewer::SceneContents& contents, viewer::SceneContents&& other) {
-    const std::uint64_t objects = contents.objects + other.objects;
-    const auto join = [&](auto& to, auto& from, const auto& unknown) {
-        if (to.empty() && from.empty()) return;
-        to.resize(std::size_t(contents.objects), unknown);
-        from.resize(std::size_t(other.objects), unknown);
-        to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+viewer::GoneCollision gone_collision(std::string_view line) {
+    const nlohmann::json old = io::parse_json(line, "older result");
+    const io::CollisionRecord row = io::read_collision({old, "older result"});
+    const auto object = [](const io::RecordedObject& recorded) {
+        const auto detail = [&](io::Detail what) { return std::string(recorded.details[std::size_t(what)]); };
+        std::string name = recorded.name.empty() ? fmt::format("#{}", recorded.number) : std::string(recorded.name);
+        if (recorded.triangle) name += fmt::format(", triangle {}", *recorded.triangle);
+        return viewer::GoneCollision::Object{std::move(name), detail(io::Detail::label), detail(io::Detail::type),
+                                             detail(io::Detail::id)};
     };
-    for (std::uint32_t& shape : other.geometry) {
-        if (shape != viewer::SceneContents::no_shape) shape += std::uint32_t(contents.shapes.size());
-    }
-    join(contents.names, other.names, std::string());
-    join(contents.groups, other.groups, 1u);
-    join(contents.geometry, other.geometry, viewer::SceneContents::no_shape);
-    join(contents.poses, other.poses, Pose());
-    std::move(other.shapes.begin(), other.shapes.end(), std::back_inserter(contents.shapes));
-    contents.objects = objects;
+    return {{object(row.a), object(row.b)}, io::finding_of(row)};
 }
 
-/// Returns the indices of the pairs in ascending order of the pairs: by a, then by b.
-std::vector<std::size_t> ascending(const std::vector<Pair>& pairs) {
-    std::vector<std::size_t> order(pairs.size());
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t k) { return pairs[i] < pairs[k]; });
-    return order;
+/// Returns for each object whether it has a row.
+std::vector<bool> colliding(const SceneContents& contents, const viewer::FrameData& data) {
+    std::vector<bool> has_row(std::size_t(contents.objects));
+    for (const auto [a, b] : data.pairs) has_row[a] = has_row[b] = true;
+    return has_row;
 }
 
-ReportView::ReportView(const DetectRequest& request, const InputSet& first, const InputSet* second)
-    : request_(request), first_(first), second_(second) {}
-
-void ReportView::add(std::span<const Pair> pairs, std::span<const Finding> findings) {
-    const auto offset = std::uint32_t(second_ == nullptr ? 0 : first_.scene.objects);
-    for (std::size_t i = 0; i < pairs.size() && pairs_.size() < max_collisions; ++i) {
-        pairs_.push_back({pairs[i].a, pairs[i].b + offset});
-        findings_.push_back(findings.empty() ? Finding() : findings[i]);
+/// Takes the shapes of objects without a row out of the scene. Returns whether it had such shapes.
+bool drop_free_shapes(SceneContents& contents, const viewer::FrameData& data) {
+    const std::vector<bool> has_row = colliding(contents, data);
+    std::vector<bool> used(contents.shapes.size());
+    for (std::size_t i = 0; i < contents.geometry.size(); ++i) {
+        std::uint32_t& shape = contents.geometry[i];
+        if (!has_row[i]) shape = SceneContents::no_shape;
+        if (shape != SceneContents::no_shape) used[shape] = true;
     }
+    bool dropped = false;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        if (used[k]) continue;
+        dropped |= !contents.shapes[k].triangles.empty();
+        contents.shapes[k].vertices.clear();
+        contents.shapes[k].triangles.clear();
+    }
+    return dropped;
 }
 
-std::string ReportView::page() const {
-    const std::vector<Box3d> boxes = all_boxes(first_, second_);
-    viewer::FrameData data;
-    data.boxes = std::span<const Box3d>(boxes);
-    for (const std::size_t i : ascending(pairs_)) {
-        data.pairs.push_back(pairs_[i]);
-        data.findings.push_back(findings_[i]);
-    }
-    data.pair_count = data.pairs.size();
-    viewer::SceneContents contents = shown_scene(request_, first_);
-    if (second_ != nullptr) append(contents, shown_scene(request_, *second_));
-    contents.title = "Collisions";
-    contents.notices.clear();  // the report itself prints the notices
-    KnownFrame finder(std::move(data));
-    viewer::FrameSource source(std::move(contents), finder);
-    source.load({});
-    std::string html;
-    try {
-        viewer::write_page(
-            source, [&](std::string_view text) { html += text; }, max_report_bytes);
-    } catch (const Error& error) {
-        if (error.code() == ErrorCode::resource_limit) return {};
-        throw;
-    }
-    return viewer::base64(viewer::gzip(html, 6));
+void drop_all_shapes(SceneContents& contents) {
+    contents.shapes.clear();
+    contents.geometry.clear();
+    contents.poses.clear();
 }
 
-/// Writes each collision to the table of the report, and adds it to the viewer's page in the report.
-class ReportWithView final : public io::CollisionWriter {
+class ReportPage final : public io::CollisionWriter {
 public:
-    ReportWithView(std::unique_ptr<io::HtmlReport> report, ReportView view)
-        : view_(std::move(view)), report_(std::move(report)) {
-        report_->set_viewer([this] { return view_.page(); });
-    }
+    /// Borrows the request and the sets.
+    ReportPage(const DetectRequest& request, const SetPair& sets)
+        : request_(request), sets_(sets), out_(request.pipeline.report) {}
 
     void write(const io::CollisionRows& rows) override {
-        view_.add(rows.pairs, rows.findings);
-        report_->write(rows);
+        for (std::size_t i = 0; i < rows.pairs.size(); ++i) {
+            const Finding finding = rows.findings.empty() ? Finding() : rows.findings[i];
+            const std::string_view change = rows.changes.empty() ? std::string_view() : io::word_of(rows.changes[i]);
+            ++class_counts_[std::size_t(finding.collision_class)];
+            rows_.push_back({total_++, rows.pairs[i], finding, change});
+            if (rows_.size() == 2 * max_rows) keep_worst();
+        }
     }
-    void write_gone(std::span<const std::string_view> lines) override { report_->write_gone(lines); }
-    void finish() override { report_->finish(); }
+
+    void write_gone(std::span<const std::string_view> lines) override {
+        gone_total_ = lines.size();
+        for (const std::string_view line : lines.first(std::min<std::size_t>(lines.size(), max_rows))) {
+            gone_.push_back(gone_collision(line));
+        }
+    }
+
+    void finish() override {
+        keep_worst();
+        out_.write(page());
+        out_.commit();
+    }
 
 private:
-    ReportView view_;
-    std::unique_ptr<io::HtmlReport> report_;
+    static constexpr std::size_t max_rows = viewer::max_listed_pairs;
+
+    /// Drops all rows except the max_rows worst ones.
+    void keep_worst() {
+        if (rows_.size() <= max_rows) return;
+        std::nth_element(rows_.begin(), rows_.begin() + std::ptrdiff_t(max_rows), rows_.end(), is_worse);
+        rows_.resize(max_rows);
+    }
+
+    /// Returns the collisions, ascending by pair.
+    viewer::FrameData frame() {
+        std::sort(rows_.begin(), rows_.end(), [](const ReportRow& p, const ReportRow& q) {
+            return p.pair != q.pair ? p.pair < q.pair : p.number < q.number;
+        });
+        viewer::FrameData data;
+        show_boxes(data, sets_, 0);
+        for (ReportRow& row : rows_) {
+            data.pairs.push_back({row.pair.a, row.pair.b + second_offset(sets_)});
+            data.findings.push_back(std::move(row.finding));
+            if (!row.change.empty()) data.changes.push_back(row.change);
+        }
+        data.pair_count = total_;
+        data.class_counts.assign(class_counts_.begin(), class_counts_.end());
+        add_changes(data);
+        return data;
+    }
+
+    void add_changes(viewer::FrameData& data) const {
+        if (request_.pipeline.baseline.empty()) return;
+        for (const io::Change change : {io::Change::begun, io::Change::same}) {
+            const std::string_view word = io::word_of(change);
+            data.facts.push_back(
+                {std::string(word), double(std::count(data.changes.begin(), data.changes.end(), word))});
+        }
+        data.facts.push_back({std::string(io::word_of(io::Change::gone)), double(gone_total_)});
+    }
+
+    /// Returns the page. If it would be too large, the page has fewer shapes, and a notice says so.
+    std::string page() {
+        const viewer::FrameData data = frame();
+        SceneContents contents = shown_scene(request_, sets_);
+        contents.gone = std::move(gone_);
+        if (const std::uint64_t rows = std::max(total_, gone_total_); rows > max_rows) {
+            contents.notices.push_back(fmt::format("The table has the worst {} of {} rows.", max_rows, rows));
+        }
+        const std::size_t notices = contents.notices.size();
+        std::string html = written(contents, data);
+        if (html.empty() && drop_free_shapes(contents, data)) {
+            contents.notices.emplace_back(
+                "Objects that do not collide are drawn as boxes, because the shapes of all are too large.");
+            html = written(contents, data);
+        }
+        if (!html.empty()) return html;
+        contents.notices.resize(notices);
+        contents.notices.emplace_back("All objects are drawn as boxes, because their shapes are too large.");
+        drop_all_shapes(contents);
+        return written(contents, data, ~std::uint64_t(0));
+    }
+
+    /// Returns the page; an empty text if it would be larger than `most`.
+    static std::string written(const SceneContents& contents, const viewer::FrameData& data,
+                               std::uint64_t most = viewer::max_page_bytes) {
+        KnownFrame finder(data);
+        viewer::FrameSource source(contents, finder);
+        source.load({});
+        std::string html;
+        try {
+            viewer::write_page(source, [&](std::string_view text) { html += text; }, {most, false});
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::resource_limit) throw;
+            return {};
+        }
+        return html;
+    }
+
+    const DetectRequest& request_;
+    SetPair sets_;
+    io::AtomicFile out_;
+    std::vector<ReportRow> rows_;
+    std::uint64_t total_ = 0, gone_total_ = 0;
+    std::array<std::uint64_t, collision_classes> class_counts_ = {};
+    std::vector<viewer::GoneCollision> gone_;
 };
-#endif
 
 }  // namespace
 
@@ -175,31 +219,9 @@ io::SceneSpace space_of_result(const DetectRequest& request, const FoundIn& sets
     return space;
 }
 
-std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets,
-                                                 const io::CollisionForm& form) {
-    io::ReportScene scene;
-    scene.title = joined(request.inputs) + (request.against.empty() ? "" : " against " + request.against);
-    scene.form = form;
-    scene.a = sets.first.frame(0).boxes;
-    scene.b = sets.second.frame(0).boxes;
-    scene.join = !request.against.empty();
-    scene.space = space_of_result(request, sets);
-    auto report = std::make_unique<io::HtmlReport>(std::make_unique<io::AtomicFile>(request.pipeline.report), scene);
-    const std::uint64_t objects = sets.first.scene.objects + (scene.join ? sets.second.scene.objects : 0);
-    report->add_fact("objects", fmt::format("{}", objects));
-    if (request.margin > 0) report->add_fact("margin", fmt::format("{}", request.margin));
-    const SetPair pair{sets.first, scene.join ? &sets.second : nullptr};
-    if (form.features) report->add_fact("tolerance", fmt::format("{:.3g}", tolerance_of(request, pair)));
-    for (const std::string& warning : input_warnings(request, pair)) report->add_note(warning);
-    if (request.limit) report->add_fact("limit", fmt::format("the first {}", *request.limit));
-    if (request.pipeline.classes) report->add_fact("classes", class_list(*request.pipeline.classes));
-    if (!request.pipeline.exclude.empty()) report->add_fact("excluded by", request.pipeline.exclude);
-    if (!request.pipeline.baseline.empty()) report->add_fact("baseline", request.pipeline.baseline);
-#ifdef OCTOPAIR_WITH_VIEWER
-    return std::make_unique<ReportWithView>(std::move(report), ReportView(request, sets.first, pair.second));
-#else
-    return report;
-#endif
+std::unique_ptr<io::CollisionWriter> make_report(const DetectRequest& request, const FoundIn& sets) {
+    const bool join = !request.against.empty();
+    return std::make_unique<ReportPage>(request, SetPair{sets.first, join ? &sets.second : nullptr});
 }
 
 }  // namespace octopair::cli

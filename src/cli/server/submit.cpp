@@ -96,7 +96,7 @@ int run_submit(const SubmitRequest& request) {
 void add_submit(Command& program, Action& action) {
     Command command = program.add_subcommand("submit", "send a scene to a server, and collect its pairs later");
     const auto request = std::make_shared<SubmitRequest>();
-    add_scene_options(command, request->what);
+    add_scene_options(command, request->what, ".npy, .csv, .json or mesh files; several files form one set");
     command.begin_section("Output");
     add_order_options(command, request->what, "find only the first N pairs");
     command.add_flag("--count-only", request->what.count_only, "find only the number of pairs");

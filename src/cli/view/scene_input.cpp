@@ -6,6 +6,8 @@
 
 #include "base/timed.hpp"
 #include "cli/detect/pipeline_options.hpp"
+#include "cli/input/search_inputs.hpp"
+#include "cli/view/shown_scene.hpp"
 #include "cli/view/view.hpp"
 #include "io/files/failure.hpp"
 #include "io/results/result_file.hpp"
@@ -23,11 +25,19 @@ namespace {
 
 constexpr std::uint64_t max_pairs = 20'000'000;  ///< per frame, 160 MB; the page has a notice if there are more
 
-/// Inputs of a scene. Shared by its contents and its finder.
+/// Inputs of a scene, with which its finder lives. Not movable, because the sets borrow from `padding`.
 struct Inputs {
+    Inputs(DetectRequest asked, std::stop_token stopped) : request(std::move(asked)), stop(std::move(stopped)) {}
+    Inputs(const Inputs&) = delete;
+    Inputs& operator=(const Inputs&) = delete;
+
     DetectRequest request;
-    InputSet set;
+    InputSet first, second;  ///< `second` is empty unless the search is a join
+    std::optional<Paddings> padding;
+    io::FrameCount frames;
     std::stop_token stop;
+
+    SetPair sets() const { return {first, request.against.empty() ? nullptr : &second}; }
 };
 
 void add_step_facts(std::vector<viewer::Fact>& facts, const Summary& summary) {
@@ -45,17 +55,16 @@ public:
         : inputs_(std::move(inputs)), engine_(make_engine(inputs_->request.engine)) {
 #ifdef OCTOPAIR_WITH_PIPELINE
         const DetectRequest& request = inputs_->request;
-        if (has_filters(request)) filters_ = make_filter_chain(request, {inputs_->set, nullptr}, inputs_->stop);
+        if (has_filters(request)) filters_ = make_filter_chain(request, inputs_->sets(), inputs_->stop);
 #endif
     }
 
-    std::uint64_t frames() const override { return inputs_->set.scene.frames; }
+    std::uint64_t frames() const override { return inputs_->frames.frames; }
 
     viewer::FrameData find(std::uint64_t frame, const ProgressSink& progress) override {
         viewer::FrameData data;
-        const Objects objects = inputs_->set.frame(frame);
-        data.boxes = objects.boxes;
-        data.padding = objects.padding;
+        const SetPair sets = inputs_->sets();
+        show_boxes(data, sets, frame);
         Options options;
         options.margin = inputs_->request.margin;
         options.limit = max_pairs;
@@ -64,10 +73,13 @@ public:
             search(frame, options, data);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::bad_input) throw;
-            if (const auto invalid = inputs_->set.find_invalid_box())
-                throw Error(ErrorCode::bad_input, invalid->message);
+            for (const InputSet* set : {&sets.first, sets.second}) {
+                const auto invalid = set == nullptr ? std::nullopt : set->find_invalid_box();
+                if (invalid) throw Error(ErrorCode::bad_input, invalid->message);
+            }
             throw;
         }
+        for (Pair& pair : data.pairs) pair.b += second_offset(sets);
         return data;
     }
 
@@ -88,7 +100,10 @@ private:
             return;
         }
 #endif
-        const Summary summary = engine_->find_pairs(inputs_->set.frame(frame), list_, options, inputs_->stop);
+        const SetPair sets = inputs_->sets();
+        const Input input{sets.first.frame(frame),
+                          sets.second == nullptr ? std::nullopt : std::optional(sets.second->frame(frame))};
+        const Summary summary = engine_->find_pairs(input, list_, options, inputs_->stop);
         data.pairs = list_.to_vector();
         data.pair_count = summary.pairs;
         data.more_pairs = summary.truncated;
@@ -109,13 +124,11 @@ public:
     ResultFinder(std::shared_ptr<const Inputs> inputs, io::ResultFile result)
         : inputs_(std::move(inputs)), result_(std::move(result)) {}
 
-    std::uint64_t frames() const override { return inputs_->set.scene.frames; }
+    std::uint64_t frames() const override { return inputs_->frames.frames; }
 
     viewer::FrameData find(std::uint64_t frame, const ProgressSink&) override {
         viewer::FrameData data;
-        const Objects objects = inputs_->set.frame(frame);
-        data.boxes = objects.boxes;
-        data.padding = objects.padding;
+        show_boxes(data, inputs_->sets(), frame);
         if (frame < result_.first_frame) return data;
         io::ResultFrame found = result_.frames.frame(frame - result_.first_frame);
         data.pairs = std::move(found.pairs);
@@ -129,55 +142,58 @@ private:
     io::ResultFile result_;
 };
 
-std::string title_of(const std::vector<std::string>& paths) {
-    std::string title;
-    for (const std::string& path : paths) {
-        if (!title.empty()) title += ", ";
-        title += path.substr(path.rfind('/') + 1);
-    }
-    return title;
-}
-
 /// Throws: Error{bad_input} if a result has objects or frames that a scene does not have.
-void check_result(const io::ResultFile& result, const InputSet& set, const std::string& path) {
-    if (result.objects > set.scene.objects) {
+void check_result(const io::ResultFile& result, const Inputs& inputs, const std::string& path) {
+    if (const std::uint64_t objects = inputs.first.scene.objects; result.objects > objects) {
         io::refuse(path, fmt::format("object {}: the scene has only {} objects; is it the scene of this result?",
-                                     result.objects - 1, set.scene.objects));
+                                     result.objects - 1, objects));
     }
-    const std::uint64_t last = result.first_frame + result.frames.size() - 1;
-    if (last >= set.scene.frames)
-        io::refuse(path, fmt::format("frame {}: the last frame of the scene is {}", last, set.scene.frames - 1));
-    if (!result.moving && set.scene.frames > 1) {
+    const std::uint64_t frames = inputs.frames.frames, last = result.first_frame + result.frames.size() - 1;
+    if (last >= frames) io::refuse(path, fmt::format("frame {}: the last frame of the scene is {}", last, frames - 1));
+    if (!result.moving && frames > 1) {
         io::refuse(path, fmt::format("which of the {} frames of the scene is this? The rows have no frames, and the "
                                      "file's name does not end with the number of one, as pairs.000003.npy does",
-                                     set.scene.frames));
+                                     frames));
     }
+}
+
+/// Reads the files of the request.
+void read(Inputs& inputs, ProgressLine& progress) {
+    const DetectRequest& request = inputs.request;
+    io::SceneContent content{.objects = request.mesh_objects,
+                             .progress = [&](double done) { progress.show("reading", done); }};
+#ifdef OCTOPAIR_WITH_PIPELINE
+    content.shapes = true;
+#endif
+    inputs.first = read_input_set(request.inputs, content, inputs.stop);
+    content.unit = inputs.first.scene.space.unit;
+    if (!request.against.empty()) inputs.second = read_input_set({request.against}, content, inputs.stop);
+    const io::LoadedScene &a = inputs.first.scene, &b = inputs.second.scene;
+    // Pages read boxes later, when the mapped file may have changed.
+    for (InputSet* set : {&inputs.first, &inputs.second}) set->scene.copy_mapped();
+#ifdef OCTOPAIR_WITH_PIPELINE
+    make_shaped(inputs.first, inputs.second, {local_threads(request.engine), request.pipeline.weld.value_or(0)},
+                inputs.stop);
+#endif
+    inputs.frames = joint_frames({a.frames, a.moving}, {b.frames, b.moving}, request);
+    inputs.padding.emplace(request, SetSizes{a.objects, b.objects}, inputs.stop);
+    if (request.padding.empty()) return;
+    inputs.first.padding = inputs.padding->inputs();
+    inputs.second.padding = inputs.padding->against();
 }
 
 }  // namespace
 
 LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop) {
-    const auto inputs = std::make_shared<Inputs>(Inputs{request.detect, {}, stop});
+    const auto inputs = std::make_shared<Inputs>(request.detect, stop);
     double read_seconds = 0;
     {
         const Timed timed(read_seconds);
-        io::SceneContent content{.objects = request.detect.mesh_objects,
-                                 .progress = [&](double done) { progress.show("reading", done); }};
-#ifdef OCTOPAIR_WITH_PIPELINE
-        content.shapes = true;
-#endif
-        inputs->set = read_input_set(request.detect.inputs, content, stop);
-        inputs->set.scene.copy_mapped();  // pages read boxes later, when the mapped file may have changed
-#ifdef OCTOPAIR_WITH_PIPELINE
-        make_shaped(inputs->set, {local_threads(request.detect.engine), request.detect.pipeline.weld.value_or(0)},
-                    stop);
-#endif
+        read(*inputs, progress);
     }
-    if (inputs->set.scene.frames == 0) io::refuse(request.detect.inputs.front(), "the scene has no frames");
+    if (inputs->frames.frames == 0) io::refuse(request.detect.inputs.front(), "the scene has no frames");
     LoadedView view;
-    view.contents = shown_scene(inputs->request, inputs->set);
-    view.contents.title = title_of(request.detect.inputs);
-    view.contents.details = [inputs](std::uint32_t object) { return shown_details(inputs->set, object); };
+    view.contents = shown_scene(inputs->request, inputs->sets());
     view.contents.facts.push_back({"seconds.read", read_seconds});
     if (request.result.empty()) {
         progress.show("preparing", 0);
@@ -185,8 +201,8 @@ LoadedView load_scene(const ViewRequest& request, ProgressLine& progress, const 
         return view;
     }
     io::ResultFile result = io::read_result(request.result, stop);
-    if (!inputs->set.scene.moving) result.first_frame = 0;  // a number in the file name is then no frame number
-    check_result(result, inputs->set, request.result);
+    if (!inputs->frames.moving) result.first_frame = 0;  // a number in the file name is then no frame number
+    check_result(result, *inputs, request.result);
     view.contents.contacts = result.frames.has_contacts();
     view.finder = std::make_unique<ResultFinder>(inputs, std::move(result));
     return view;

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "octopair/error.hpp"
+#include "viewer/scene/source.hpp"
 #include "viewer/server/page_server.hpp"
-#include "viewer/server/source.hpp"
 
 namespace octopair::cli {
 

@@ -19,8 +19,8 @@
 #include "octopair/scene_watcher.hpp"
 #include "octopair/version.hpp"
 #include "viewer/live/live_source.hpp"
+#include "viewer/scene/source.hpp"
 #include "viewer/server/page_server.hpp"
-#include "viewer/server/source.hpp"
 
 namespace octopair::cli {
 

@@ -19,8 +19,8 @@
 #include "io/formats/format_choice.hpp"
 #include "io/results/result_file.hpp"
 #include "viewer/scene/page_file.hpp"
+#include "viewer/scene/source.hpp"
 #include "viewer/server/page_server.hpp"
-#include "viewer/server/source.hpp"
 
 namespace octopair::cli {
 
@@ -196,7 +196,7 @@ void write_files(const ViewRequest& request, LoadedView& view, ProgressLine& pro
     find_all(source, progress, stop);
     std::string text;
     const std::uint64_t written = viewer::write_page(
-        source, [&](std::string_view part) { text += part; }, viewer::max_page_bytes,
+        source, [&](std::string_view part) { text += part; }, {},
         [&](double done) {
             throw_if_stopped(stop);
             progress.show("writing", done);
@@ -240,9 +240,10 @@ void add_view(Command& program, Action& action) {
     Command command = program.add_subcommand("view", "show a scene, a result, a recording or a server in a browser");
     const auto request = std::make_shared<ViewRequest>();
     add_view_options(command, *request);
-    command.set_examples(
-        {"octopair view parts.glb", "octopair view boxes.npy pairs.npy", "octopair view parts.glb --export page.html"});
-    command.callback([request, &action] {
+    command.set_examples({"octopair view parts.glb", "octopair view boxes.npy pairs.npy",
+                          "octopair view walls.ifc --against pipes.ifc", "octopair view parts.glb --export page.html"});
+    command.callback([request, command, &action] {
+        request->detect.given = command.given_options();
         check_view_options(*request);
         action = [request] { return run_view(*request); };
     });

@@ -11,7 +11,7 @@
 #include "cli/command/command.hpp"
 #include "cli/command/progress_line.hpp"
 #include "cli/detect/detection.hpp"
-#include "cli/input/input_set.hpp"
+#include "cli/view/shown_scene.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/server/page_server.hpp"
 
@@ -24,6 +24,7 @@ struct ViewRequest {
     std::string export_page, screenshot, listen;
     bool no_browser = false;
     unsigned port = 0;
+    std::vector<std::string> search_options;  ///< names of the options of the search, without dashes
 };
 
 // view_options.cpp
@@ -63,17 +64,6 @@ bool is_recording(const std::string& path);
 /// Replays a recording. Keeps the steps in memory up to a limit. Beyond the limit, steps are left out, and a notice says so.
 /// Throws: what replay() throws.
 LoadedView load_recording(const ViewRequest& request, ProgressLine& progress, const std::stop_token& stop);
-
-// shown_scene.cpp
-
-/// Returns the word for the axis up in messages to pages: "y", "z", or empty if unknown.
-std::string axis_word(io::UpAxis up);
-
-/// Returns names, groups, shapes, axes and warnings of a set. The members `title` and `details` stay empty.
-viewer::SceneContents shown_scene(const DetectRequest& request, const InputSet& set);
-
-/// Returns the details of an object that the files give, such as {"type", "IfcBeam"}.
-std::vector<std::pair<std::string, std::string>> shown_details(const InputSet& set, std::uint32_t object);
 
 // browser.cpp
 

@@ -20,11 +20,16 @@ namespace {
 
 [[noreturn]] void refuse_view(const std::string& what) { throw Error(ErrorCode::usage, what); }
 
-void add_search_options(Command& command, DetectRequest& request) {
-    command.begin_section("What counts");
-    add_margin_option(command, request);
-    add_stage_option(command, request.pipeline,
-                     "last stage: pairs, objects or features (default: features for mesh and JSON files)");
+/// Adds the inputs and the options of the search, which are those of `octopair detect`.
+void add_search_options(Command& command, ViewRequest& request) {
+    DetectRequest& detect = request.detect;
+    add_scene_options(command, detect,
+                      "scene files, a recording, a result (also with its scene), or the address of a server");
+    add_stage_options(command, detect.pipeline,
+                      "last stage: pairs, objects or features (default: features for mesh and JSON files)");
+    command.begin_section("Exact stages");
+    add_exact_options(command, detect.pipeline);
+    request.search_options = command.option_names();
 }
 
 void add_output_options(Command& command, ViewRequest& request) {
@@ -39,6 +44,9 @@ void add_output_options(Command& command, ViewRequest& request) {
 
 void add_page_options(Command& command, ViewRequest& request) {
     command.begin_section("Page");
+    add_up_option(command, request.detect.pipeline, "axis that points up: y or z (default: that of the file, or z)");
+    add_unit_option(command, request.detect.pipeline,
+                    "unit of lengths: mm, cm, dm, m, km, in or ft (default: that of the file)");
     command
         .add_option(
             "--port",
@@ -68,21 +76,24 @@ bool is_address(const std::string& input) {
 }
 
 /// Throws: Error{usage} if options of a search are given. `input`: the input, for the message; showing it needs no search.
-void check_no_search(const DetectRequest& request, const std::string& input) {
-    const char* given = nullptr;
-    if (request.margin > 0) given = "--margin";
-    if (request.pipeline.stage) given = "--stage";
-    if (request.mesh_objects == io::MeshObjects::triangle) given = "--objects";
-    if (given != nullptr) refuse_view(fmt::format("{}: not with {}, whose pairs are known", given, input));
+void check_no_search(const ViewRequest& request, const std::string& input) {
+    const auto& names = request.search_options;
+    for (const GivenOption& option : request.detect.given) {
+        const std::string_view name = option.name;
+        if (!name.starts_with("--")) continue;
+        if (std::find(names.begin(), names.end(), name.substr(2)) == names.end()) continue;
+        refuse_view(fmt::format("{}: not with {}, whose pairs are known", name, input));
+    }
 }
 
 void check_server_view(ViewRequest& request) {
     DetectRequest& detect = request.detect;
     if (detect.inputs.size() > 1) refuse_view("a server is shown alone, without other inputs");
-    check_no_search(detect, "a server");
+    check_no_search(request, "a server");
     if (!request.export_page.empty() || !request.screenshot.empty())
         refuse_view("--export and --screenshot: not with a server");
     if (detect.pipeline.space.up != io::UpAxis::unknown) refuse_view("--up: not with a server");
+    if (!detect.pipeline.space.unit.empty()) refuse_view("--unit: not with a server");
 #ifdef OCTOPAIR_WITH_SERVICE
     detect.engine.choose_server(detect.inputs.front());
     detect.inputs.clear();
@@ -115,22 +126,19 @@ void find_result(ViewRequest& request) {
 void check_scenes(ViewRequest& request) {
     DetectRequest& detect = request.detect;
     if (!request.result.empty()) {
-        check_no_search(detect, "a result");
+        check_no_search(request, "a result");
         detect.pipeline.stage = Stage::pairs;
         return;
     }
     const auto recording = std::find_if(detect.inputs.begin(), detect.inputs.end(), is_recording);
     if (recording != detect.inputs.end()) {
         if (detect.inputs.size() > 1) refuse_view(*recording + ": a recording is shown alone, without other inputs");
-        check_no_search(detect, "a recording");
+        check_no_search(request, "a recording");
         detect.pipeline.stage = Stage::pairs;
         return;
     }
     set_stage(detect);
-    const auto boxes = input_of_boxes(detect);
-    if (boxes && stage_of(detect) != Stage::pairs) {
-        refuse_view(fmt::format("--stage: {} has only boxes, no shapes; use --stage pairs", *boxes));
-    }
+    check_search_options(detect);
 }
 
 std::string random_token() {
@@ -146,20 +154,12 @@ std::string random_token() {
 }  // namespace
 
 void add_view_options(Command& command, ViewRequest& request) {
-    DetectRequest& detect = request.detect;
-    command.begin_section("Input");
-    command
-        .add_option("INPUT", detect.inputs,
-                    "scene files, a recording, a result (also with its scene), or the address of a server")
-        .required();
-    add_objects_option(command, detect);
-    add_up_option(command, detect.pipeline, "axis that points up: y or z (default: that of the file, or z)");
-    add_search_options(command, detect);
+    add_search_options(command, request);
     add_output_options(command, request);
     add_page_options(command, request);
-    add_threads_option(command, detect.engine);
+    add_threads_option(command, request.detect.engine);
 #ifdef OCTOPAIR_WITH_SERVICE
-    add_server_options(command, detect.engine.server);
+    add_server_options(command, request.detect.engine.server);
 #endif
 }
 
@@ -177,8 +177,11 @@ void check_view_options(ViewRequest& request) {
         refuse_view(fmt::format("--screenshot: {}: the name of a picture must end in .png", request.screenshot));
     }
     std::vector<FileOption> inputs;
-    inputs.reserve(detect.inputs.size());
+    inputs.reserve(detect.inputs.size() + 3);
     for (const std::string& input : detect.inputs) inputs.push_back({"", input});
+    inputs.push_back({"--against", detect.against});
+    inputs.push_back({"--padding", detect.padding});
+    inputs.push_back({"--exclude", detect.pipeline.exclude});
     check_outputs(inputs, {{"--export", request.export_page}, {"--screenshot", request.screenshot}});
     find_result(request);
     check_scenes(request);

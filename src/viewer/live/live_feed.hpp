@@ -18,7 +18,7 @@
 
 #include "octopair/scene.hpp"
 #include "viewer/scene/shown_objects.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 

@@ -8,7 +8,7 @@
 #include "viewer/live/live_feed.hpp"
 #include "viewer/scene/frame_answers.hpp"
 #include "viewer/scene/scene_contents.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 

@@ -20,6 +20,8 @@ Json contact_json(const Contact& contact) {
     return {{"point", json_of(contact.point)}, {"normal", json_of(contact.normal)}, {"depth", contact.depth}};
 }
 
+constexpr std::size_t max_row_contacts = 16;
+
 /// How bad the classes are, indexed by CollisionClass: objects that overlap are worse than objects that touch.
 constexpr std::array<std::uint8_t, collision_classes> severities = {2, 0, 3, 1, 6, 5, 4, 0};
 
@@ -36,6 +38,18 @@ void add_depth(Json& row, const Finding& finding) {
     }
 }
 
+/// Adds the first contacts, at most `most`. If some are left out, adds their number or says that more exist.
+void add_contacts(Json& row, const Finding& finding, std::size_t most) {
+    if (finding.contacts.empty()) return;
+    Json contacts = Json::array();
+    for (std::size_t i = 0; i < std::min(most, finding.contacts.size()); ++i) {
+        contacts.push_back(contact_json(finding.contacts[i]));
+    }
+    row["contacts"] = std::move(contacts);
+    if (finding.contacts.size() > most) row["contact_count"] = finding.contacts.size();
+    if (finding.more_contacts) row["more_contacts"] = true;
+}
+
 void add_finding(Json& row, const Finding& finding) {
     row["class"] = class_words[std::size_t(finding.collision_class)];
     if (finding.collision_class > CollisionClass::clearance && finding.collision_class != CollisionClass::undecided) {
@@ -46,14 +60,9 @@ void add_finding(Json& row, const Finding& finding) {
     if (finding.collision_class == CollisionClass::clearance && finding.nearest[0] != finding.nearest[1]) {
         row["nearest"] = {json_of(finding.nearest[0]), json_of(finding.nearest[1])};
     }
-    if (finding.contacts.empty()) return;
-    Json contacts = Json::array();
-    constexpr std::size_t most = 16;
-    for (std::size_t i = 0; i < std::min(most, finding.contacts.size()); ++i) {
-        contacts.push_back(contact_json(finding.contacts[i]));
-    }
-    row["contacts"] = std::move(contacts);
-    if (finding.more_contacts || finding.contacts.size() > most) row["more_contacts"] = true;
+    constexpr std::array<std::string_view, 4> open_words = {"", "a", "b", "ab"};
+    if (const int open = int(finding.open[0]) + 2 * int(finding.open[1])) row["open"] = open_words[std::size_t(open)];
+    if (finding.time > 0) row["time"] = finding.time;
 }
 
 /// Returns the length of the shortest translation along an axis that separates two boxes, or minus their largest gap.
@@ -70,14 +79,12 @@ constexpr std::size_t max_compared_overlaps = 4'000'000;
 
 /// The place of a row in the order from the worst to the least one.
 struct Rank {
-    std::uint8_t severity;
-    double depth;
+    Severity severity;
     std::uint32_t row;
 };
 
 bool is_worse(const Rank& p, const Rank& q) {
-    if (p.severity != q.severity) return p.severity > q.severity;
-    return p.depth != q.depth ? p.depth > q.depth : p.row < q.row;
+    return p.severity != q.severity ? p.severity > q.severity : p.row < q.row;
 }
 
 class Table {
@@ -86,24 +93,36 @@ public:
 
     Answer rows(const RowRequest& request) {
         std::vector<std::uint32_t> kept = select(request);
-        const std::size_t total = kept.size();
-        const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, total));
-        const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, total - from));
+        // A frame may list only some of its pairs.
+        const bool all = kept.size() == frame_.data.pairs.size();
+        const std::uint64_t total = all ? std::max<std::uint64_t>(frame_.data.pair_count, kept.size()) : kept.size();
+        const std::size_t from = std::size_t(std::min<std::uint64_t>(request.from, kept.size()));
+        const std::size_t count = std::size_t(std::min<std::uint64_t>(request.count, kept.size() - from));
         sort(kept, request.sort, from + count);
-        Json list = Json::array();
-        for (std::size_t i = from; i < from + count; ++i) list.push_back(row(kept[i]));
-        return json_answer({{"total", total}, {"rows", list}});
+        // A table may have 200,000 rows, so each becomes text on its own.
+        std::string text = "{\"total\":" + std::to_string(total) + ",\"rows\":[";
+        for (std::size_t i = from; i < from + count; ++i) {
+            if (i > from) text += ',';
+            text += json_answer(row(kept[i], {request.count > max_full_rows, i >= max_full_rows})).body;
+        }
+        return {AnswerKind::json, text + "]}"};
     }
 
 private:
+    /// What a row leaves out.
+    struct Omitted {
+        bool names, contacts;
+    };
+
     std::vector<std::uint32_t> select(const RowRequest& request) const {
         const std::string text = lower_case(request.text);
+        const TextSearch search(frame_.contents, text);
         std::vector<std::uint32_t> kept;
         for (std::uint32_t i = 0; i < frame_.data.pairs.size(); ++i) {
             const auto [a, b] = frame_.data.pairs[i];
             if (request.object && a != *request.object && b != *request.object) continue;
             if (request.with && a != *request.with && b != *request.with) continue;
-            if (!text.empty() && !matches(frame_.contents, a, text) && !matches(frame_.contents, b, text)) continue;
+            if (!text.empty() && !search.finds(a) && !search.finds(b)) continue;
             kept.push_back(i);
         }
         return kept;
@@ -140,12 +159,10 @@ private:
     Rank rank_of(std::uint32_t i) const {
         if (frame_.data.findings.empty()) {
             const bool compared = frame_.data.pairs.size() <= max_compared_overlaps;
-            return {severities[0], compared ? overlap(i).value_or(0) : 0, i};
+            return {{severities[0], compared ? overlap(i).value_or(0) : 0}, i};
         }
         const Finding& finding = frame_.data.findings[i];
-        const std::uint8_t severity = severities[std::size_t(finding.collision_class)];
-        if (finding.collision_class == CollisionClass::clearance) return {severity, -finding.distance, i};
-        return {severity, has_depth(finding) ? finding.depth : overlap(i).value_or(0), i};
+        return {severity_of(finding, has_depth(finding) ? 0 : overlap(i).value_or(0)), i};
     }
 
     /// Returns by how much the boxes of a pair overlap, if no exact test has computed a depth and the boxes are those of the objects.
@@ -163,17 +180,21 @@ private:
 
     bool has_begun(Pair pair) const { return std::binary_search(frame_.began.begin(), frame_.began.end(), pair); }
 
-    Json row(std::uint32_t i) const {
+    Json row(std::uint32_t i, const Omitted& omitted) const {
         const Pair pair = frame_.data.pairs[i];
         Json row = {{"a", pair.a}, {"b", pair.b}};
-        if (!frame_.contents.names.empty()) {
-            row["name_a"] = name_of(frame_.contents, pair.a);
-            row["name_b"] = name_of(frame_.contents, pair.b);
+        const auto is_hidden = [&](std::uint32_t object) { return frame_.shown.row_of(object) == ShownObjects::none; };
+        for (const auto& [key, object] : {std::pair("name_a", pair.a), std::pair("name_b", pair.b)}) {
+            if (frame_.contents.names.empty() || (omitted.names && !is_hidden(object))) continue;
+            row[key] = name_of(frame_.contents, object);
         }
         if (has_begun(pair)) row["change"] = "began";
-        if (!frame_.data.findings.empty()) add_finding(row, frame_.data.findings[i]);
+        if (!frame_.data.changes.empty()) row["change"] = frame_.data.changes[i];
+        if (!frame_.data.findings.empty()) {
+            add_finding(row, frame_.data.findings[i]);
+            add_contacts(row, frame_.data.findings[i], omitted.contacts ? 1 : max_row_contacts);
+        }
         if (const auto overlapping = overlap(i)) row["overlap"] = *overlapping;
-        const auto is_hidden = [&](std::uint32_t object) { return frame_.shown.row_of(object) == ShownObjects::none; };
         if ((is_hidden(pair.a) || is_hidden(pair.b)) && frame_.data.has(pair.a) && frame_.data.has(pair.b)) {
             row["boxes"] = {json_of(box_of(frame_.data, pair.a)), json_of(box_of(frame_.data, pair.b))};
         }
@@ -230,6 +251,31 @@ Answer class_rows(const ShownFrame& frame) {
     rows.reserve(frame.shown.size());
     for (const std::uint32_t object : frame.shown.objects()) rows.push_back(classes[object]);
     return binary_answer(std::span<const std::uint8_t>(rows));
+}
+
+std::string_view class_word(CollisionClass collision_class) { return class_words[std::size_t(collision_class)]; }
+
+Severity severity_of(const Finding& finding, double overlap) {
+    const std::uint8_t rank = severities[std::size_t(finding.collision_class)];
+    if (finding.collision_class == CollisionClass::clearance) return {rank, -finding.distance};
+    return {rank, has_depth(finding) ? finding.depth : overlap};
+}
+
+Answer gone_rows(std::span<const GoneCollision> gone) {
+    Json rows = Json::array();
+    for (const GoneCollision& collision : gone) {
+        Json row = Json::object();
+        for (std::size_t k = 0; k < 2; ++k) {
+            const auto& [name, label, type, id] = collision.objects[k];
+            for (const auto& [key, text] : {std::pair("name", &name), std::pair("label", &label),
+                                            std::pair("type", &type), std::pair("id", &id)}) {
+                if (!text->empty()) row[std::string(key) + (k == 0 ? "_a" : "_b")] = *text;
+            }
+        }
+        add_finding(row, collision.finding);
+        rows.push_back(std::move(row));
+    }
+    return json_answer(rows);
 }
 
 Answer collision_rows(const ShownFrame& frame, const RowRequest& request) { return Table(frame).rows(request); }

@@ -66,8 +66,19 @@ std::string lower_case(std::string_view text) {
     return out;
 }
 
-bool matches(const SceneContents& contents, std::uint32_t object, std::string_view text) {
-    return std::to_string(object) == text || lower_case(name_of(contents, object)).find(text) != std::string::npos;
+TextSearch::TextSearch(const SceneContents& contents, std::string_view text) : contents_(contents), text_(text) {
+    for (const std::string& word : contents.details.words) {
+        found_.push_back(lower_case(word).find(text_) != std::string::npos);
+    }
+}
+
+bool TextSearch::finds(std::uint32_t object) const {
+    if (std::to_string(object) == text_) return true;
+    if (lower_case(name_of(contents_, object)).find(text_) != std::string::npos) return true;
+    const auto& columns = contents_.details.columns;
+    return std::any_of(columns.begin(), columns.end(), [&](const ObjectTexts::Column& column) {
+        return object < column.words.size() && found_[column.words[object]];
+    });
 }
 
 Box3d region_of(const Address& address) {

@@ -1,6 +1,7 @@
 // Functions that make the answers to a page's requests about one frame. Scenes of files and live scenes use the same functions.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,9 +10,9 @@
 #include <vector>
 
 #include "octopair/octants.hpp"
+#include "viewer/scene/answer.hpp"
 #include "viewer/scene/scene_contents.hpp"
 #include "viewer/scene/shown_objects.hpp"
-#include "viewer/server/answer.hpp"
 
 namespace octopair::viewer {
 
@@ -36,7 +37,9 @@ struct ShownFrame {
 
 /// Maximum numbers of pairs, octants and other elements in one answer.
 inline constexpr std::size_t max_listed_pairs = 200'000, max_listed_octants = 20'000, max_near = 100'000,
-                             max_partners = 1'000, max_found = 50, max_rows = 1'000;
+                             max_partners = 1'000, max_found = 50, max_rows = 200'000;
+/// An answer with more rows than this is brief: names of shown objects are left out, and later rows have only their first contact.
+inline constexpr std::size_t max_full_rows = 1'000;
 
 /// Returns the boxes of all rows.
 Answer box_rows(const ShownFrame& frame);
@@ -51,8 +54,20 @@ Answer pair_rows(std::span<const Pair> pairs, std::size_t most = max_listed_pair
 std::string_view name_of(const SceneContents& contents, std::uint32_t object);
 /// Returns a text in lower case, as far as it is ASCII.
 std::string lower_case(std::string_view text);
-/// Returns whether the name of an object has `text` (in lower case), or its index is `text`.
-bool matches(const SceneContents& contents, std::uint32_t object, std::string_view text);
+/// Searches the names and the details of objects for a text.
+class TextSearch {
+public:
+    /// `text` is in lower case. Borrows the contents.
+    TextSearch(const SceneContents& contents, std::string_view text);
+
+    /// Returns whether the name or a detail of an object has the text, or its index is the text.
+    bool finds(std::uint32_t object) const;
+
+private:
+    const SceneContents& contents_;
+    std::string text_;
+    std::vector<bool> found_;  // for each word of the details, whether it has the text
+};
 
 /// Returns the objects that are not shown and overlap `region`, the largest first.
 Answer near_answer(const ShownFrame& frame, const Box3d& region);
@@ -67,6 +82,19 @@ std::optional<Answer> object_answer(const ShownFrame& frame, std::uint32_t objec
 Answer search_answer(const ShownFrame& frame, std::string_view text);
 
 // collision_table.cpp
+
+/// Returns the word for a class, for example "penetrating".
+std::string_view class_word(CollisionClass collision_class);
+
+/// Orders collisions from the least to the worst one: first by class, then by depth or distance.
+struct Severity {
+    std::uint8_t rank;
+    double depth;
+
+    auto operator<=>(const Severity&) const = default;
+};
+/// Returns how bad a collision is. `overlap`: its depth if the finding has none.
+Severity severity_of(const Finding& finding, double overlap = 0);
 
 /// Selects rows of the table of collisions.
 struct RowRequest {
@@ -85,6 +113,8 @@ RowRequest row_request(const Address& address);
 Answer class_rows(const ShownFrame& frame);
 /// Returns the selected rows, and the number of all rows that match.
 Answer collision_rows(const ShownFrame& frame, const RowRequest& request);
+/// Returns the rows of collisions that are gone.
+Answer gone_rows(std::span<const GoneCollision> gone);
 
 // octant_answers.cpp
 

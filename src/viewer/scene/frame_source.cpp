@@ -10,7 +10,7 @@
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
 #include "viewer/scene/frame_answers.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 
@@ -212,6 +212,8 @@ std::optional<Answer> FrameSource::get_scene(std::string_view what, const Addres
     if (what == "shown.u32" && !shown_.in_order()) return binary_answer(shown_.objects());
     if (what == "groups.u32" && !contents_.groups.empty()) return shown_column(contents_.groups);
     if (what == "names.json" && !contents_.names.empty()) return name_column();
+    if (what == "details.json" && !contents_.details.columns.empty()) return detail_columns();
+    if (what == "gone.json" && !contents_.gone.empty()) return gone_rows(contents_.gone);
     if (what == "geometry.u32" && !contents_.shapes.empty()) return shown_column(contents_.geometry);
     if (what == "shapes.json" && !contents_.shapes.empty()) return shapes_answer();
     if (what == "timeline.json" && contents_.moving) return timeline_answer();
@@ -249,6 +251,9 @@ Answer FrameSource::view_answer() const {
     Json has = {{"rows", !shown_.in_order()},
                 {"boxes", contents_.has_boxes},
                 {"names", !contents_.names.empty()},
+                {"details", !contents_.details.columns.empty()},
+                {"gone", !contents_.gone.empty()},
+                {"octants", !export_ || export_->octants},
                 {"groups", !contents_.groups.empty()},
                 {"shapes", !contents_.shapes.empty()},
                 {"contacts", contents_.contacts},
@@ -261,20 +266,25 @@ Answer FrameSource::view_answer() const {
     add_facts(summary, first_facts_, !export_);
     std::vector<std::string> notices = contents_.notices;
     if (export_) notices.insert(notices.end(), export_->notices.begin(), export_->notices.end());
-    return json_answer({{"version", OCTOPAIR_VERSION},
-                        {"title", contents_.title},
-                        {"kind", "scene"},
-                        {"objects", contents_.objects},
-                        {"shown", shown_.size()},
-                        {"frames", export_ ? export_->frames : frames()},
-                        {"origin", json_of(origin_)},
-                        {"bounds", json_of(bounds_)},
-                        {"up", contents_.up},
-                        {"unit", contents_.unit},
-                        {"margin", contents_.margin},
-                        {"has", std::move(has)},
-                        {"notices", std::move(notices)},
-                        {"summary", std::move(summary)}});
+    Json files = Json::array();
+    for (const ShownFile& file : contents_.files) files.push_back({{"name", file.name}, {"first", file.first}});
+    Json view = {{"version", OCTOPAIR_VERSION},
+                 {"title", contents_.title},
+                 {"kind", "scene"},
+                 {"objects", contents_.objects},
+                 {"shown", shown_.size()},
+                 {"frames", export_ ? export_->frames : frames()},
+                 {"origin", json_of(origin_)},
+                 {"bounds", json_of(bounds_)},
+                 {"up", contents_.up},
+                 {"unit", contents_.unit},
+                 {"margin", contents_.margin},
+                 {"files", std::move(files)},
+                 {"has", std::move(has)},
+                 {"notices", std::move(notices)},
+                 {"summary", std::move(summary)}};
+    if (contents_.second_set) view["second_set"] = *contents_.second_set;
+    return json_answer(view);
 }
 
 Answer FrameSource::frame_answer(const Frame& frame) const {
@@ -286,8 +296,23 @@ Answer FrameSource::frame_answer(const Frame& frame) const {
                  {"pairs_listed", std::min(frame.data.pairs.size(), max_listed_pairs)},
                  {"began", frame.began.size()},
                  {"ended", frame.ended.size()}};
+    if (Json counts = class_counts(frame.data); !counts.empty()) json["classes"] = std::move(counts);
     add_facts(json, frame.data.facts, !export_);
     return json_answer(json);
+}
+
+/// Returns the number of pairs of each class that the frame has.
+Json FrameSource::class_counts(const FrameData& data) const {
+    std::vector<std::uint64_t> counts = data.class_counts;
+    if (counts.empty()) {
+        counts.resize(collision_classes);
+        for (const Finding& finding : data.findings) ++counts[std::size_t(finding.collision_class)];
+    }
+    Json json = Json::object();
+    for (std::size_t i = 1; i < counts.size(); ++i) {
+        if (counts[i] > 0) json[std::string(class_word(CollisionClass(i)))] = counts[i];
+    }
+    return json;
 }
 
 Answer FrameSource::timeline_answer() const {
@@ -357,6 +382,16 @@ Answer FrameSource::name_column() const {
     return json_answer(names);
 }
 
+Answer FrameSource::detail_columns() const {
+    Json json = {{"words", contents_.details.words}};
+    for (const ObjectTexts::Column& column : contents_.details.columns) {
+        Json words = Json::array();
+        for (const std::uint32_t object : shown_.objects()) words.push_back(column.words[object]);
+        json[column.name] = std::move(words);
+    }
+    return json_answer(json);
+}
+
 Answer FrameSource::level_column(Frame& frame) {
     const std::vector<std::uint8_t> levels = levels_of(frame.data, octants(frame));
     return shown_column(levels);
@@ -374,6 +409,8 @@ std::vector<std::string> FrameSource::addresses() const {
     if (!shown_.in_order()) all.push_back("shown.u32");
     if (!contents_.groups.empty()) all.push_back("groups.u32");
     if (!contents_.names.empty()) all.push_back("names.json");
+    if (!contents_.details.columns.empty()) all.push_back("details.json");
+    if (!contents_.gone.empty()) all.push_back("gone.json");
     if (contents_.moving) all.push_back("timeline.json");
     if (contents_.shapes.empty()) return all;
     all.insert(all.end(), {"geometry.u32", "shapes.json", "poses/0.f32"});
@@ -384,16 +421,21 @@ std::vector<std::string> FrameSource::addresses() const {
 std::vector<std::string> FrameSource::addresses_of(std::uint64_t number) {
     const std::string f = std::to_string(number);
     std::vector<std::string> all;
-    for (const char* const what : {"frame/#.json", "frame/#.f32", "partners/#.u32", "levels/#.u8", "pairs/#.u32",
-                                   "collisions/#.json", "octants/#.json"}) {
+    for (const char* const what :
+         {"frame/#.json", "frame/#.f32", "partners/#.u32", "pairs/#.u32", "collisions/#.json"}) {
         all.push_back(what);
     }
     if (contents_.moving) all.insert(all.end(), {"began/#.u32", "ended/#.u32"});
     if (has_classes_) all.push_back("classes/#.u8");
-    const std::lock_guard lock(frames_mutex_);
-    unsigned deepest = 0;
-    for (const OctantSummary& octant : octants(*frame(number)).all()) deepest = std::max(deepest, octant.code.level());
-    for (unsigned level = 0; level <= deepest; ++level) all.push_back("octants/#/" + std::to_string(level) + ".bin");
+    if (!export_ || export_->octants) {
+        all.insert(all.end(), {"levels/#.u8", "octants/#.json"});
+        const std::lock_guard lock(frames_mutex_);
+        unsigned deepest = 0;
+        for (const OctantSummary& octant : octants(*frame(number)).all())
+            deepest = std::max(deepest, octant.code.level());
+        for (unsigned level = 0; level <= deepest; ++level)
+            all.push_back("octants/#/" + std::to_string(level) + ".bin");
+    }
     for (std::string& address : all) address.replace(address.find('#'), 1, f);
     return all;
 }

@@ -13,7 +13,7 @@
 
 #include "octopair/octants.hpp"
 #include "viewer/scene/frame_answers.hpp"
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 
@@ -57,6 +57,7 @@ public:
     struct Export {
         std::uint64_t frames;
         std::vector<std::string> notices;
+        bool octants = true;  ///< false: the page has no octants and no levels
     };
     void prepare_export(Export how);
 
@@ -81,6 +82,8 @@ private:
     template <typename T>
     Answer shown_column(const std::vector<T>& of_objects) const;
     Answer name_column() const;
+    Answer detail_columns() const;
+    Json class_counts(const FrameData& data) const;
     Answer level_column(Frame& frame);
 
     FramePointer frame(std::uint64_t number);

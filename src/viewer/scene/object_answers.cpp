@@ -10,11 +10,12 @@ std::optional<Answer> object_answer(const ShownFrame& frame, std::uint32_t objec
     if (object >= frame.objects) return std::nullopt;
     Json json = {{"index", object}};
     if (!contents.names.empty()) json["name"] = name_of(contents, object);
-    if (contents.details) {
-        Json details = Json::object();
-        for (const auto& [what, text] : contents.details(object)) details[what] = text;
-        if (!details.empty()) json["details"] = std::move(details);
+    Json details = Json::object();
+    for (const ObjectTexts::Column& column : contents.details.columns) {
+        const std::string_view text = contents.details.of(column, object);
+        if (!text.empty()) details[column.name] = text;
     }
+    if (!details.empty()) json["details"] = std::move(details);
     const std::uint32_t row = frame.shown.row_of(object);
     json["row"] = row == ShownObjects::none ? -1 : std::int64_t(row);
     if (!contents.groups.empty()) json["groups"] = contents.groups[object];
@@ -50,9 +51,9 @@ Answer search_answer(const ShownFrame& frame, std::string_view text) {
         ++total;
     }
     if (!wanted.empty()) {
-        for (std::uint32_t i = 0; i < std::min<std::uint64_t>(frame.objects, contents.names.size()); ++i) {
-            if (index && i == *index) continue;
-            if (lower_case(contents.names[i]).find(wanted) == std::string::npos) continue;
+        const TextSearch search(contents, wanted);
+        for (std::uint32_t i = 0; i < frame.objects; ++i) {
+            if ((index && i == *index) || !search.finds(i)) continue;
             ++total;
             if (found.size() < max_found) found.push_back(i);
         }

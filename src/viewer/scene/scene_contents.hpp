@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,6 +38,35 @@ struct Fact {
     std::string text = {};  ///< if not empty, in place of the number
 };
 
+/// Texts about objects, such as their types. Equal texts are stored once.
+struct ObjectTexts {
+    struct Column {
+        std::string name;                  ///< for example "type"
+        std::vector<std::uint32_t> words;  ///< one index into ObjectTexts::words per object
+    };
+    std::vector<std::string> words = {{}};  ///< distinct texts; the first is empty, for objects without a text
+    std::vector<Column> columns;
+
+    std::string_view of(const Column& column, std::uint32_t object) const {
+        return object < column.words.size() ? std::string_view(words[column.words[object]]) : std::string_view();
+    }
+};
+
+/// A file that a scene was read from. Its objects follow those of the file before it.
+struct ShownFile {
+    std::string name;
+    std::uint64_t first;  ///< index of its first object
+};
+
+/// A collision of an older result that is gone. Its objects may no longer exist, so only texts and the finding are known.
+struct GoneCollision {
+    struct Object {
+        std::string name, label, type, id;
+    };
+    std::array<Object, 2> objects;
+    Finding finding;
+};
+
 /// The properties of a scene that are equal in all frames. Arrays have one element per object, or are empty.
 struct SceneContents {
     std::string title;
@@ -47,8 +78,11 @@ struct SceneContents {
     double margin = 0;
     std::vector<std::string> names;
     std::vector<std::uint32_t> groups;
-    /// Returns details of an object, such as {"type", "IfcBeam"}. May be empty.
-    std::function<std::vector<std::pair<std::string, std::string>>(std::uint32_t object)> details;
+    ObjectTexts details;           ///< for example types and materials
+    std::vector<ShownFile> files;  ///< in the order of their objects, or empty
+    /// Number of the first object of the second set, if each pair has one object of each set. Results number both sets from 0.
+    std::optional<std::uint64_t> second_set;
+    std::vector<GoneCollision> gone;  ///< only exported pages have them
     std::vector<ShownShape> shapes;
     std::vector<std::uint32_t> geometry;  ///< index into `shapes`, or no_shape
     std::vector<Pose> poses;
@@ -66,9 +100,12 @@ struct FrameData {
     std::shared_ptr<const void> keep;  ///< owner of the memory of `boxes`, or null
     std::vector<Pair> pairs;           ///< ascending; the first ones, if `pair_count` is larger
     std::vector<Finding> findings;     ///< one per pair, or empty
+    std::vector<std::string_view>
+        changes;  ///< one word per pair since an older result, such as "new", or empty; static texts
     std::uint64_t pair_count = 0;
-    bool more_pairs = false;  ///< true if there are more than `pair_count`
-    std::vector<Fact> facts;  ///< for example seconds by step
+    std::vector<std::uint64_t> class_counts;  ///< number of pairs of each class; empty: those of `findings`
+    bool more_pairs = false;                  ///< true if there are more than `pair_count`
+    std::vector<Fact> facts;                  ///< for example seconds by step
 
     bool has(std::size_t object) const { return exists.empty() || exists[object] != 0; }
 };

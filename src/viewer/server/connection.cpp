@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "octopair/error.hpp"
-#include "viewer/server/page.hpp"
+#include "viewer/scene/page.hpp"
 
 namespace octopair::viewer {
 
@@ -93,9 +93,10 @@ Response respond_page(const Request& request) {
     response.set(http::field::content_type, "text/html; charset=utf-8");
     if (accepts_gzip(request)) {
         response.set(http::field::content_encoding, "gzip");
-        response.body() = std::string(compressed_page());
+        static const std::string compressed = gzip(page, 9);
+        response.body() = compressed;
     } else {
-        response.body() = page();
+        response.body() = std::string(page);
     }
     return response;
 }

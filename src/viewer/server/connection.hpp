@@ -9,8 +9,8 @@
 #include <functional>
 #include <string>
 
+#include "viewer/scene/source.hpp"
 #include "viewer/server/access.hpp"
-#include "viewer/server/source.hpp"
 
 namespace octopair::viewer {
 

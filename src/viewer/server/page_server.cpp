@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "octopair/error.hpp"
+#include "viewer/scene/source.hpp"
 #include "viewer/server/connection.hpp"
-#include "viewer/server/source.hpp"
 
 namespace octopair::viewer {
 

@@ -14,7 +14,7 @@
 #include <memory>
 #include <string>
 
-#include "viewer/server/source.hpp"
+#include "viewer/scene/source.hpp"
 
 namespace octopair::viewer {
 

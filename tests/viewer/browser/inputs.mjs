@@ -32,6 +32,8 @@ const plain = {
   'none.npy': () => npyOfBoxes([]),
   'one.npy': () => npyOfBoxes([[0, 0, 0, 1, 2, 3]]),
   'same.npy': () => npyOfBoxes(Array.from({length: 40}, () => [1, 1, 1, 2, 2, 2])),
+  // 244,650 pairs.
+  'many.npy': () => npyOfBoxes(Array.from({length: 700}, () => [1, 1, 1, 2, 2, 2])),
   'far.npy': () => npyOfBoxes(threeBoxes.map(box => box.map((value, k) => value + [1e7, -1e7, 1e7][k % 3]))),
   'nan.npy': () => npyOfBoxes([[0, 0, 0, 1, 1, 1], [0, NaN, 0, 1, 1, 1]]),
   'shapes.json': () => JSON.stringify(shapesScene()),

@@ -1,12 +1,12 @@
 // Tests pages of the program in Chromium: node program_test.mjs --program octopair --python python3 --package FOLDER [--only TEXT]
 import assert from 'node:assert/strict';
 import {spawnSync} from 'node:child_process';
-import {existsSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 import {parseArgs} from 'node:util';
-import {clickAt, data, launch, open, pixel, project, ready, runTests, settings, waitForData} from '../page/browser.mjs';
+import {accessibility, clickAt, data, launch, open, pixel, project, ready, runTests, settings, waitForData} from '../page/browser.mjs';
 import {checkAccessibility, checkKeys, colourAt, complete, depthDigits, depthText, describePicture, expectTable, light, near, partnersIn, readCsv, readJsonl,
   searchFor, tablePairs, text, topOf, waitForText} from './checks.mjs';
 import {hostileName, Inputs, shapesScene, threeBoxes} from './inputs.mjs';
@@ -131,6 +131,7 @@ test('octants: levels, numbers and labels', () => withView([inputs.get('100k.npy
     await waitForData(page, 'octants', listed);
     assert.equal((await settings(page)).level, level);
   }
+  await page.keyboard.press('m');
   const number = page.locator('#options input[aria-label^=Level]').last();
   // The deepest level depends on how the program divides octants; here the level above it is chosen.
   const chosen = levels.length - 2;
@@ -220,7 +221,7 @@ test('a million boxes: the first picture, a notice, and boxes near a place', asy
 
 test('no boxes', () => withView([inputs.get('none.npy')], async page => {
   assert.equal(await text(page, '#counts'), '0 objects, 0 pairs');
-  assert.equal(await text(page, '#table-totals'), 'No collisions');
+  assert.equal(await text(page, '#table-totals'), 'No pairs');
   for (const key of ['h', 'n', 'o', 'l', 'f']) await page.keyboard.press(key);
   assert.equal(await data(page, 'drawn'), '0');
 }));
@@ -263,7 +264,7 @@ test('shapes: pictures, names and contacts', () => withView([inputs.get('shapes.
   const at = k => shapesScene().objects[k].position[0];
   for (const top of [[at(0), 0, 2.1], [at(1), 0, 2.1], [at(3), 0, 2]]) await colourAt(page, top, light.free, 12);
   await colourAt(page, [at(5), 0, 2], light.colliding, 12);
-  assert.deepEqual(await page.locator('#rows .measure').allInnerTexts(), rows.map(depthText));
+  assert.deepEqual(await page.locator('#rows .number').allInnerTexts(), rows.map(depthText));
   const cells = page.locator('#rows td');
   assert.ok(await cells.evaluateAll(all => all.every(cell => cell.scrollWidth <= cell.clientWidth)));
   await page.locator('#rows tr').first().click();
@@ -288,16 +289,13 @@ test('an assembly: names and contacts', async () => {
   return withView([path], async page => {
     assert.equal(await data(page, 'pairs'), String(rows.length));
     await expectTable(page, rows.slice(0, 100).map(row => [row.a, row.b]));
-    assert.deepEqual(await page.locator('#rows .measure').allInnerTexts(), rows.slice(0, 100).map(depthText));
+    assert.deepEqual(await page.locator('#rows .number').allInnerTexts(), rows.slice(0, 100).map(depthText));
     await waitForData(page, 'drawn', '67');
     const deepest = rows.reduce((best, row) => row.depth > best.depth ? row : best);
     await searchFor(page, deepest.a_name);
     await waitForText(page, '#selection dl', new RegExp(`index\\s+${deepest.a}\\s`));
     await page.selectOption('#sort', 'worst');
-    await page.waitForFunction(([a, b]) => {
-      const cells = document.querySelector('#rows tr')?.cells;
-      return cells && parseInt(cells[0].textContent, 10) === a && parseInt(cells[1].textContent, 10) === b;
-    }, [deepest.a, deepest.b]);
+    await page.waitForFunction(pair => document.querySelector('#rows tr')?.dataset.pair === pair, `${deepest.a},${deepest.b}`);
     await page.locator('#rows tr').first().click();
     await waitForData(page, 'contacts', deepest.contacts.length);
     assert.ok(await page.locator('#rows td:last-child').evaluateAll(all => all.every(cell => cell.scrollWidth <= cell.clientWidth)));
@@ -644,15 +642,74 @@ test('an exported page', async () => {
 
 test('an exported page without the rows of all pairs', async () => {
   const file = inputs.path('many.html');
-  run(options.program, ['view', inputs.get('10k.npy'), '--export', file, '--quiet']);
-  const {values} = readNpy(inputs.get('10k.npy'));
-  const overlap = ([a, b]) => Math.min(...[0, 1, 2].map(k => Math.min(values[6 * a + 3 + k] - values[6 * b + k], values[6 * b + 3 + k] - values[6 * a + k])));
-  const pairs = readCsv(inputs.detect('10k.npy', '.csv')).map(row => row.map(Number)).sort((p, q) => overlap(q) - overlap(p));
-  assert.ok(pairs.length > 1000);
-  for (const [pair, words] of [[pairs[0], /^Collision/], [pairs.at(-1), /^Not among the collisions of this page/]]) {
-    await withPage(`${pathToFileURL(file).href}#selected=${pair.join(',')}`, async page => {
+  run(options.program, ['view', inputs.get('many.npy'), '--export', file, '--quiet']);
+  for (const [pair, words] of [['0,1', /^Collision/], ['698,699', /^Not among the collisions of this page/]]) {
+    await withPage(`${pathToFileURL(file).href}#selected=${pair}&show=selection`, async page => {
       await waitForText(page, '#selection', words);
-      assert.equal(await data(page, 'selected'), pair.join(','));
+      assert.equal(await data(page, 'selected'), pair);
+      await waitForText(page, '#table-totals', /of 200,000 pairs, 44,650 less bad left out$/);
+    });
+  }
+});
+
+test('a report that compares with an older result', async () => {
+  const base = inputs.detect('shapes.json', '.jsonl', '--stage', 'features');
+  // The last object but one goes away from its neighbour, to the first.
+  const scene = shapesScene();
+  scene.objects[7].position = [-0.7, 0, 1.5];
+  writeFileSync(inputs.path('moved.json'), JSON.stringify(scene));
+  run(options.program, ['detect', inputs.path('moved.json'), '--stage', 'features', '--baseline', base, '--report', inputs.path('report.html'), '--unit', 'mm',
+    '-o', inputs.path('moved.jsonl'), '--quiet']);
+  const rows = readJsonl(inputs.path('moved.jsonl'));
+  const of = change => rows.filter(row => row.change === change);
+  assert.ok(['new', 'same', 'gone'].every(change => of(change).length > 0));
+  const address = pathToFileURL(inputs.path('report.html')).href;
+  const worst = [...of('new'), ...of('same')].reduce((best, row) => row.depth > best.depth ? row : best);
+  await withPage(address, async page => {
+    assert.equal(await text(page, '#counts'), `9 objects, ${rows.length - of('gone').length} collisions`);
+    assert.equal(await data(page, 'selected'), `${worst.a},${worst.b}`);
+    assert.match(await text(page, '#head'), /depth \(mm\)\s+change/);
+    assert.match(await text(page, '#selection h2'), new RegExp(`^${worst.class}, depth .*${depthDigits(worst.depth)} mm`, 'i'));
+    for (const change of ['new', 'same', 'gone']) {
+      const button = page.locator('#kinds button', {hasText: change});
+      assert.equal(await button.innerText(), `${of(change).length} ${change}`);
+      await button.click();
+      await page.waitForFunction(([word, count]) => {
+        const cells = [...document.querySelectorAll('#rows td.change')];
+        return cells.length === count && cells.every(cell => cell.textContent === word);
+      }, [change, of(change).length]);
+      await button.click();
+    }
+    await page.locator('#kinds button', {hasText: 'gone'}).click();
+    const [gone] = of('gone');
+    await page.locator('#rows tr', {hasText: gone.b_label ?? gone.b_name}).first().click();
+    await waitForText(page, '#selection', new RegExp(`^Gone: ${gone.class}[^]*${gone.a_name}[^]*${gone.b_name}`));
+    await waitForData(page, 'selected', '');
+    assert.deepEqual(await accessibility(page), []);
+    await page.keyboard.press('Escape');
+    assert.ok(await page.locator('#selection').isHidden());
+  });
+  const [other] = of('new');
+  await withPage(`${address}#selected=${other.a},${other.b}`, async page => {
+    assert.equal(await data(page, 'selected'), `${other.a},${other.b}`);
+    assert.match(await text(page, '#selection'), /change\s+new/);
+    assert.match(await text(page, '#legend'), /in both|contacts, with the deepest labelled\n.*the way out of it/);
+  });
+});
+
+test('a report about two files', async () => {
+  writeFileSync(inputs.path('walls.json'), JSON.stringify({objects: [{name: 'wall', shape: {type: 'box', half_extents: [2, 0.1, 1]}}]}));
+  writeFileSync(inputs.path('pipes.json'), JSON.stringify({objects: [{name: 'far', shape: {type: 'sphere', radius: 1}, position: [9, 0, 0]},
+    {name: 'pipe', shape: {type: 'cylinder', radius: 0.05, length: 1}, rotation: [1, 1, 0, 0]}]}));
+  const words = [inputs.path('walls.json'), '--against', inputs.path('pipes.json'), '--quiet'];
+  run(options.program, ['detect', ...words, '--stage', 'features', '--report', inputs.path('two.html'), '-o', inputs.path('two.jsonl')]);
+  run(options.program, ['view', ...words, '--export', inputs.path('two_view.html')]);
+  for (const name of ['two.html', 'two_view.html']) {
+    await withPage(pathToFileURL(inputs.path(name)).href, async page => {
+      assert.equal(await text(page, '#title'), 'walls.json against pipes.json');
+      assert.deepEqual(await tablePairs(page), [[0, 2]]);
+      assert.match(await text(page, '#selection'), /wall\s+walls\.json · #0\s+pipe\s+pipes\.json · #1/);
+      assert.deepEqual(await page.locator('#rows small').allInnerTexts(), ['walls.json', 'pipes.json']);
     });
   }
 });

@@ -8,7 +8,7 @@ function element(address, answer) {
 }
 
 function addresses(view) {
-  const list = ['timeline.json', 'groups.u32', 'names.json', 'geometry.u32', 'shapes.json', 'shape/0', 'shape/1', 'shape/2'];
+  const list = ['timeline.json', 'groups.u32', 'names.json', 'details.json', 'geometry.u32', 'shapes.json', 'shape/0', 'shape/1', 'shape/2'];
   for (let f = 0; f < view.frames; ++f) {
     list.push(`frame/${f}.json`, `frame/${f}.f32`, `poses/${f}.f32`, `partners/${f}.u32`, `classes/${f}.u8`, `levels/${f}.u8`, `pairs/${f}.u32`,
       `began/${f}.u32`,      `ended/${f}.u32`, `octants/${f}.json`, `collisions/${f}.json`);
@@ -20,8 +20,8 @@ function addresses(view) {
 export function exportPage(scene, page, output) {
   const view = scene.view();
   view.has = {...view.has, search: false, near: false};
-  const none = new URLSearchParams();
-  const elements = addresses(view).map(address => [address, scene.answer(address, none)]).filter(([, answer]) => answer !== null)
+  const worst = new URLSearchParams({sort: 'worst'});
+  const elements = addresses(view).map(address => [address, scene.answer(address, worst)]).filter(([, answer]) => answer !== null)
     .map(([address, answer]) => element(address, answer));
   const marker = '<!-- data -->';
   const [before, after] = readFileSync(page, 'utf8').split(marker);

@@ -44,8 +44,17 @@ function middleOf(scene, k) {
 test('loads and counts', 'static', 10, async ({page, scene}) => {
   assert.equal(await data(page, 'drawn'), '10');
   assert.equal(await data(page, 'pairs'), String(scene.frame(0).pairs.length));
-  assert.match(await text(page, '#counts'), /^10 objects, \d+ pairs?$/);
+  assert.match(await text(page, '#counts'), /^10 objects, \d+ collisions?$/);
   assert.match(await page.title(), /mock static/);
+});
+
+test('the summary of the run', 'static', 60, async ({page, scene}) => {
+  await complete(page);
+  await page.click('#tab-scene');
+  const {penetrating, touching} = scene.classCounts(0);
+  assert.deepEqual((await text(page, '#frame-info')).split(/\s+/), ['collisions', String(penetrating + touching),
+    ...Object.entries(scene.classCounts(0)).flatMap(([word, count]) => [word, String(count)])]);
+  assert.match(await text(page, '#summary'), /objects\s+60\s+unit\s+m\s+format\s+npy/);
 });
 
 test('colours are those of the legend', 'static', 1, async ({page, scene}) => {
@@ -177,10 +186,10 @@ test('the table sorts, filters and selects', 'static', 1000, async ({page, scene
   await page.waitForFunction(() => document.getElementById('table-totals').textContent.startsWith('1 to'));
   assert.deepEqual(await tablePairs(page), scene.frame(0).pairs.slice(0, 100));
   await page.selectOption('#sort', 'worst');
-  await page.waitForFunction(a => parseInt(document.querySelector('#rows td').textContent, 10) === a, worst[0].a);
+  await page.waitForFunction(a => document.querySelector('#rows tr').dataset.pair.startsWith(`${a},`), worst[0].a);
   assert.deepEqual(await tablePairs(page), pairsOf(worst.slice(0, 100)));
   // A lower bound does not look like the depth itself.
-  const shown = await page.locator('#rows .measure').allInnerTexts();
+  const shown = await page.locator('#rows .number').allInnerTexts();
   assert.deepEqual(shown, worst.slice(0, 100).map(row => `${row.depth_kind === 'at_least' ? '≥ ' : ''}${depthDigits(row.depth)}`));
   const before = await page.evaluate(() => window.octopairView.camera());
   await page.locator('#rows tr').nth(2).click();
@@ -194,6 +203,157 @@ test('the table sorts, filters and selects', 'static', 1000, async ({page, scene
   await page.fill('#filter', 'plate 1');
   await page.waitForFunction(() => [...document.querySelectorAll('#rows tr')].length > 0 &&
     [...document.querySelectorAll('#rows tr')].every(row => row.textContent.includes('plate 1')));
+});
+
+// The pairs of a scene that pass, the worst first.
+function worstPairs(scene, passes) {
+  const {rows} = scene.collisions(0, new URLSearchParams({sort: 'worst'}));
+  return rows.filter(row => passes(row, scene.detailsOf(row.a), scene.detailsOf(row.b))).map(({a, b}) => [a, b]);
+}
+
+async function expectPairs(page, pairs) {
+  await waitForText(page, '#table-totals', pairs.length ? new RegExp(`of ${pairs.length.toLocaleString('en-US')} collisions?$`) : /^No collisions$/);
+  assert.deepEqual(await tablePairs(page), pairs.slice(0, 100));
+}
+
+test('classes, words, details and depths filter the list', 'static', 300, async ({page, scene}) => {
+  await complete(page);
+  const counts = scene.classCounts(0);
+  assert.deepEqual(await page.locator('#kinds button').allInnerTexts(), [`${counts.penetrating} penetrating`, `${counts.touching} touching`]);
+  const kind = word => page.locator('#kinds button', {hasText: word});
+  await kind('touching').click();
+  await expectPairs(page, worstPairs(scene, row => row.class === 'touching'));
+  assert.equal(await kind('touching').getAttribute('aria-pressed'), 'true');
+  await page.click('#filters summary');
+  await page.selectOption('#filter-type', 'rib');
+  await expectPairs(page, worstPairs(scene, (row, a, b) => row.class === 'touching' && (a.type === 'rib' || b.type === 'rib')));
+  await kind('touching').click();
+  await page.selectOption('#filter-level', 'deck 1');
+  await page.fill('#depth-from', '0.3');
+  const all = (row, a, b) => row.depth >= 0.3 && [a, b].some(object => object.type === 'rib') && [a, b].some(object => object.level === 'deck 1');
+  await expectPairs(page, worstPairs(scene, all));
+  // Each word is part of a text about one of the two objects.
+  await page.fill('#filter', 'BOLT plate');
+  await expectPairs(page, worstPairs(scene, (row, a, b) => all(row, a, b) && [a, b].some(object => object.type === 'bolt')));
+  await page.fill('#depth-to', '0.2');
+  await waitForText(page, '#no-rows', /^No collision passes the filters/);
+  await page.click('#clear-filters');
+  await expectPairs(page, worstPairs(scene, () => true));
+  assert.deepEqual(await accessibility(page), []);
+});
+
+test('the buttons of classes have the numbers of their frame', 'moving', 200, async ({page, scene}) => {
+  await complete(page);
+  const other = [...Array(20).keys()].find(f => scene.classCounts(f).touching !== scene.classCounts(0).touching);
+  await page.locator('#frame-slider').fill(String(other));
+  await waitForText(page, '#kinds', new RegExp(`${scene.classCounts(other).touching} touching`));
+});
+
+test('groups gather the list, and keys move in it', 'static', 300, async ({page, scene}) => {
+  await complete(page);
+  await page.selectOption('#group', 'type');
+  await waitForText(page, '#table-totals', /^1 to 6 of 6 groups, /);
+  const groups = new Map();
+  for (const [a, b] of worstPairs(scene, () => true)) {
+    const title = [scene.detailsOf(a).type, scene.detailsOf(b).type].sort().join(' × ');
+    groups.set(title, [...groups.get(title) ?? [], [a, b]]);
+  }
+  assert.deepEqual(await page.locator('#rows strong').allInnerTexts(), [...groups.keys()]);
+  assert.deepEqual(await tablePairs(page), []);
+  const [first] = groups.values();
+  await page.locator('#rows tr').first().focus();
+  await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => document.querySelectorAll('#rows tr[data-pair]').length > 0);
+  assert.deepEqual(await tablePairs(page), first.slice(0, 100));
+  await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('Enter');
+  await waitForData(page, 'selected', first[0].join(','));
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowLeft');
+  await page.waitForFunction(() => document.querySelectorAll('#rows tr[data-pair]').length === 0);
+  await page.selectOption('#group', 'object');
+  await waitForText(page, '#table-totals', / groups, /);
+  const objects = new Set(scene.frame(0).pairs.flat());
+  await waitForText(page, '#table-totals', new RegExp(`of ${objects.size.toLocaleString('en-US')} groups`));
+  assert.deepEqual(await accessibility(page), []);
+});
+
+test('rows have labels, and dense rows one line', 'static', 12, async ({page}) => {
+  await complete(page);
+  const [[a]] = await tablePairs(page);
+  assert.equal(await page.locator('#rows .label').first().innerText(), a === 1 ? '<img src=x onerror=alert(1)>' : `plate ${a}`);
+  assert.match(await page.locator('#rows small').first().innerText(), /^(plate|rib|bolt) · deck [01]$/);
+  const height = () => page.locator('#rows tr').first().evaluate(row => row.offsetHeight);
+  const roomy = await height();
+  await page.check('#dense');
+  assert.ok(await height() < 0.7 * roomy);
+  assert.match(await text(page, '#head'), /depth \(m\)/);
+});
+
+test('rows have a thickness where it is known, and labels that tell objects apart', 'static', 12, async ({page, scene}) => {
+  const kinds = ['at_most', 'at_least', 'undecided'];
+  const nameOf = k => k === 1 ? 'hull/rib' : k === 2 ? 'deck/rib' : 'hull/plate';
+  await page.route('**/collisions/*.json*', async route => {
+    const answer = await (await route.fetch()).json();
+    answer.rows.forEach((row, k) => Object.assign(row, {name_a: nameOf(row.a), name_b: nameOf(row.b), thickness_kind: kinds[k % 3]}, k % 3 < 2 ? {thickness: 0.25} : {}));
+    await route.fulfill({json: answer});
+  });
+  await page.route('**/names.json', route => route.fulfill({json: scene.names.map((_, k) => nameOf(k))}));
+  await page.reload();
+  await complete(page);
+  assert.match(await text(page, '#head'), /thickness \(m\)/);
+  const cells = await page.locator('#rows td:last-child').allInnerTexts();
+  assert.deepEqual(cells, cells.map((_, k) => ['≤ 0.25', '≥ 0.25', '?'][k % 3]));
+  await page.locator('#rows tr').first().click();
+  await waitForText(page, '#selection', /thickness\s+≤ 0\.25 m/);
+  const labelOf = k => nameOf(k).endsWith('rib') ? nameOf(k) : `plate #${k}`;
+  assert.deepEqual(await page.locator('#rows .label').allInnerTexts(), (await tablePairs(page)).flat().map(labelOf));
+});
+
+test('a scale has a round length', 'static', 40, async ({page}) => {
+  await complete(page);
+  for (const key of ['+', '-', '-', '-']) {
+    await page.keyboard.press(key);
+    await pictures(page, 2);
+    const [, length] = /^([\d.]+) m$/.exec(await text(page, '#scale'));
+    assert.match(String(Number(length).toExponential()), /^[125]e/);
+    const width = await page.locator('#scale span').evaluate(bar => bar.getBoundingClientRect().width);
+    // Two points at the distance of what the camera looks at, across its direction.
+    const [x, y, z, , yaw] = (await page.evaluate(() => window.octopairView.camera())).split('_').map(Number);
+    const at = along => project(page, [1000 + x, 2000 + y, 3000 + z].map((value, k) => value + along * [-Math.sin(yaw), Math.cos(yaw), 0][k]));
+    const [p, q] = [await at(-0.5 * length), await at(0.5 * length)];
+    assert.ok(Math.abs(Math.hypot(p.x - q.x, p.y - q.y) - width) < 0.25 * width + 3, `${Math.hypot(p.x - q.x, p.y - q.y)} for ${width}`);
+  }
+});
+
+test('the page on paper has the picture', 'static', 40, async ({page}) => {
+  await complete(page);
+  await page.emulateMedia({media: 'print'});
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+  const {colours, wide} = await page.evaluate(async () => {
+    const picture = document.querySelector('.printed');
+    await picture.decode();
+    const canvas = new OffscreenCanvas(picture.naturalWidth, picture.naturalHeight);
+    const context = canvas.getContext('2d');
+    context.drawImage(picture, 0, 0);
+    return {colours: new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size, wide: picture.offsetWidth};
+  });
+  assert.ok(colours > 100 && wide > 300, `${colours} colours, ${wide} pixels wide`);
+  assert.equal(await data(page, 'theme'), 'light');
+  assert.ok(await page.locator('#rows tr').first().isVisible());
+  await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
+  assert.equal(await page.locator('.printed').count(), 0);
+  assert.equal(await data(page, 'theme'), 'dark');
+}, {hash: '', colorScheme: 'dark'});
+
+test('very many ghosts are boxes', 'shapes', 20_500, async ({page}) => {
+  await complete(page);
+  assert.equal(await data(page, 'drawn'), '20500');
+  await page.evaluate(() => window.octopairView.select(7));
+  await page.keyboard.press('f');
+  // Boxes far from what the camera looks at are not drawn.
+  await page.waitForFunction(() => Number(document.documentElement.dataset.drawn) < 20_000);
+  assert.ok(Number(await data(page, 'drawn')) > 0);
 });
 
 test('every key has its effect', 'moving', 60, async ({page}) => {
@@ -503,10 +663,10 @@ test('the first picture shows the worst collision', 'static', 300, async ({page,
   assert.deepEqual(await accessibility(page), []);
   await page.click('#selection summary');
   assert.match(await text(page, '#selection details'), new RegExp(`own depth[^]*\\s${depthDigits(0.5 * worst.depth)}$`));
-  // The contact is in the middle of what the panel of settings leaves free, and the small picture shows where that is.
+  // The contact is in the middle of the picture, and the small picture shows where that is.
   const at = await project(page, worst.contacts[0].point);
   const stage = await page.locator('#stage').boundingBox();
-  assert.ok(Math.abs(at.x - (stage.x + 0.5 * (stage.width + 248))) < 60 && Math.abs(at.y - (stage.y + 0.5 * stage.height)) < 60);
+  assert.ok(Math.abs(at.x - (stage.x + 0.5 * stage.width)) < 60 && Math.abs(at.y - (stage.y + 0.5 * stage.height)) < 60);
   assert.ok(await page.locator('#overview').isVisible());
   // In a section, what both boxes have in common has a colour of its own.
   await page.keyboard.press('j');
@@ -514,7 +674,7 @@ test('the first picture shows the worst collision', 'static', 300, async ({page,
   await page.keyboard.press('x');
   assert.equal((await settings(page)).section, 'contact');
   assert.ok(await isCommon(page, at));
-  assert.match(await text(page, '#legend'), /\nin both$/);
+  assert.match(await text(page, '#legend'), /\nin both\n/);
   await page.click('#selection button:text("Section")');
   assert.equal((await settings(page)).section, 'none');
   assert.doesNotMatch(await text(page, '#legend'), /in both/);
@@ -546,9 +706,14 @@ test('objects of a pair have two colours, and others are ghosts', 'static', 40, 
   const seen = async k => pixel(page, await project(page, top(k)));
   await complete(page);
   await page.keyboard.press('h');
-  // One of the two may be glass, since it would hide the other.
-  const two = [await seen(a), await seen(b)];
-  assert.ok(near(two[0], light.selected) || near(two[1], light.second), two.join(' '));
+  // One of the two may be glass, since it would hide the other, and may itself hide a part of the other.
+  const onTop = async k => {
+    const [x, y, z] = top(k);
+    const places = [-0.4, 0, 0.4].flatMap(i => [-0.4, 0, 0.4].map(j => [x + i * (boxes[6 * k + 3] - boxes[6 * k]), y + j * (boxes[6 * k + 4] - boxes[6 * k + 1]), z]));
+    return Promise.all(places.map(async place => pixel(page, await project(page, place))));
+  };
+  const two = [await onTop(a), await onTop(b)];
+  assert.ok(two[0].some(colour => near(colour, light.selected)) || two[1].some(colour => near(colour, light.second)), two.join(' '));
   const others = [...new Set(pairs.flat())].filter(k => k !== a && k !== b);
   const grey = colour => Math.max(...colour) - Math.min(...colour) < 40 && Math.min(...colour) > 120;
   const colours = await Promise.all(others.map(seen));

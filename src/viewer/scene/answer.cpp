@@ -1,4 +1,4 @@
-#include "viewer/server/answer.hpp"
+#include "viewer/scene/answer.hpp"
 
 #include <zlib.h>
 
@@ -99,19 +99,6 @@ std::string gzip(std::string_view bytes, int level) {
     out.resize(stream.total_out);
     deflateEnd(&stream);
     if (result != Z_STREAM_END) throw std::bad_alloc();
-    return out;
-}
-
-std::string gunzip(std::string_view compressed, std::size_t size) {
-    z_stream stream{};
-    if (inflateInit2(&stream, gzip_format) != Z_OK) throw std::bad_alloc();
-    std::string out(size, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data()));
-    stream.avail_in = uInt(compressed.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = uInt(out.size());
-    inflate(&stream, Z_FINISH);
-    inflateEnd(&stream);
     return out;
 }
 

@@ -58,8 +58,6 @@ Answer binary_answer(std::span<const T> values) {
 /// Compresses with gzip. `level`: from 1 (fast) to 9 (small). The same input gives the same bytes.
 /// Throws: std::bad_alloc.
 std::string gzip(std::string_view bytes, int level);
-/// Returns the `size` bytes that gzip compressed. Requires: the bytes are those of gzip(), or of a file that the build made.
-std::string gunzip(std::string_view compressed, std::size_t size);
 
 /// Returns the bytes as text in base64.
 std::string base64(std::string_view bytes);

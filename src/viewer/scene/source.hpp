@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/server/answer.hpp"
+#include "viewer/scene/answer.hpp"
 
 namespace octopair::viewer {
 
