@@ -98,7 +98,8 @@ std::unique_ptr<Filter> make_exact_object_filter(const ShapedObjects& first, con
 std::unique_ptr<Filter> make_exact_feature_filter(const ShapedObjects& first, const ExactOptions& options = {},
                                                   const ShapedObjects* second = nullptr);
 
-/// Returns the filter "depth", which drops pairs that are certainly less deep than `min_depth`: Finding::depth_at_most is smaller.
+/// Returns the filter "depth", which drops pairs that are certainly less deep than `min_depth`: Finding::depth_at_most is smaller, or the
+/// overlap of a touching pair is proven to be thinner.
 /// Keeps pairs without a depth. Requires: "exact feature" or "exact triangle" is before it.
 std::unique_ptr<Filter> make_depth_filter(double min_depth);
 

@@ -122,7 +122,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
            objects: Optional[Literal["node", "triangle"]] = None, margin: Optional[float] = None, padding: Optional[PathLike] = None,
            adjacent: Optional[Literal["beyond_shared", "beyond-shared", "exclude", "include"]] = None,
            max_contacts: Optional[int] = None, tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None,
-           min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None,
+           chord: Optional[float] = None, min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None,
            exclude: Optional[PathLike] = None, same_parent: Optional[Literal["include", "exclude"]] = None,
            baseline: Optional[PathLike] = None, statuses: Optional[PathLike] = None, report: Optional[PathLike] = None,
            up: Optional[Literal["y", "z"]] = None, unit: Optional[str] = None, events: bool = False,
@@ -148,7 +148,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
         What counts as one object of a mesh file.
     margin, padding
         Largest gap at which a pair counts; file with the clearance of each object.
-    adjacent, max_contacts, tolerance, duplicate_tolerance, min_depth, classes, weld
+    adjacent, max_contacts, tolerance, duplicate_tolerance, chord, min_depth, classes, weld
         Options of the exact stages: :meth:`Pipeline.triangles`, :meth:`Pipeline.exact_features`, :meth:`Geometry.mesh`. `classes` is a
         list with commas.
     exclude, same_parent

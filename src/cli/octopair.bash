@@ -62,7 +62,7 @@ _octopair_values() {
     case $2:$3 in
         --stage:*) words="pairs objects features" ;;
         --adjacent:*) words="beyond-shared exclude include" ;;
-        --classes:*) words="clearance collision touching penetrating contained duplicate" ;;
+        --classes:*) words="clearance collision touching penetrating contained duplicate undecided" ;;
         --up:*) words="y z" ;;
         --unit:*) words="mm cm dm m km in ft" ;;
         --same-parent:*) words="include exclude" ;;

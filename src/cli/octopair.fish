@@ -59,7 +59,7 @@ function __octopair_values
         case '--adjacent:*'
             printf '%s\n' beyond-shared exclude include
         case '--classes:*'
-            printf '%s\n' clearance collision touching penetrating contained duplicate
+            printf '%s\n' clearance collision touching penetrating contained duplicate undecided
         case '--up:*'
             printf '%s\n' y z
         case '--unit:*'

@@ -251,7 +251,9 @@ public:
     void apply(Batch& batch) const override {
         batch.keep_if([&](std::size_t i) {
             const Finding& finding = batch.finding(i);
-            return finding.depth_kind == DepthKind::unknown || finding.depth_at_most >= min_depth_;
+            const bool thin = finding.collision_class == CollisionClass::touching &&
+                              finding.thickness_kind == ThicknessKind::at_most && finding.thickness < min_depth_;
+            return finding.depth_kind == DepthKind::unknown || (finding.depth_at_most >= min_depth_ && !thin);
         });
     }
 

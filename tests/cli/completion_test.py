@@ -22,7 +22,7 @@ import time
 
 # Values of options by their argument in the help. An argument that is in none of these tables fails the test.
 WORDS = {
-    "--classes": "clearance collision touching penetrating contained duplicate",
+    "--classes": "clearance collision touching penetrating contained duplicate undecided",
     "--stage": "pairs objects features", "--adjacent": "beyond-shared exclude include", "--up": "y z",
     "--unit": "mm cm dm m km in ft", "--same-parent": "include exclude", "--objects WHAT": "node triangle",
     "--index-type": "uint32 uint64", "--order": "ascending octal", "--log": "text json",

@@ -231,8 +231,56 @@ TEST_F(Stages, UndecidedPairsAreCounted) {
     EXPECT_TRUE(has_text(run("detect open.obj").err, "undecided   1 pair left out"));
     EXPECT_EQ(stats("open.obj")["undecided"], 1);
     EXPECT_EQ(stats("open.obj")["pairs"], 0);
+    // As rows of their own class, if they are asked for.
+    for (const std::string stage : {"objects", "features"}) {
+        const Outcome listed =
+            run("detect open.obj --stage " + stage + " --classes undecided,contained --output u.jsonl");
+        EXPECT_TRUE(has_text(content("u.jsonl"), R"("class":"undecided")")) << content("u.jsonl");
+        EXPECT_TRUE(has_text(listed.err, "classes     1 undecided")) << listed.err;
+        EXPECT_FALSE(has_text(listed.err, "left out")) << listed.err;
+        EXPECT_EQ(run("detect open.obj --verify --stage " + stage + " --classes undecided --count-only --quiet").out,
+                  "1\n");
+    }
     EXPECT_EQ(stats("closed.obj")["pairs"], 1);
     EXPECT_FALSE(stats("closed.obj").contains("undecided"));
+}
+
+/// The chord error of tessellated curves gives the default tolerance: a bolt in its hole touches, and the summary says why.
+TEST_F(Stages, ChordErrorsGiveTheTolerance) {
+    // Two prisms, closed by their outlines: a bolt of radius 1, and a plate with a hole of radius 0.99.
+    std::string text = "o bolt\n";
+    const auto circle = [&](double radius, double z) {
+        for (int i = 0; i < 4; ++i) {
+            const double x[] = {1, 0, -1, 0}, y[] = {0, 1, 0, -1};
+            text += "v " + std::to_string(radius * x[i]) + ' ' + std::to_string(radius * y[i]) + ' ' +
+                    std::to_string(z) + '\n';
+        }
+    };
+    const auto sides = [&](int low, int high) {
+        for (int i = 0; i < 4; ++i) {
+            const int next = (i + 1) % 4;
+            for (const int corner : {low + i, low + next, high + next, high + i}) {
+                text += (corner == low + i ? "f " : " ") + std::to_string(corner);
+            }
+            text += '\n';
+        }
+    };
+    circle(1, -3), circle(1, 3);
+    sides(1, 5);
+    text += "f 4 3 2 1\nf 5 6 7 8\no plate\n";
+    circle(4, 0), circle(4, 1), circle(0.99, 0), circle(0.99, 1);
+    sides(9, 13), sides(21, 17), sides(17, 9), sides(13, 21);
+    write_file(file("bolt.obj"), text);
+    const std::string detect = "detect bolt.obj --stage features --output b.jsonl";
+    EXPECT_TRUE(has_text(run(detect).err, "classes     1 penetrating"));
+    EXPECT_TRUE(has_text(content("b.jsonl"), R"("class":"penetrating")"));
+    const Outcome with_chord = run(detect + " --chord 0.01 --stats s.json");
+    EXPECT_TRUE(has_text(with_chord.err, "tolerance   0.02 (twice the chord error 0.01)")) << with_chord.err;
+    EXPECT_TRUE(has_text(content("b.jsonl"), R"("class":"touching")")) << content("b.jsonl");
+    EXPECT_TRUE(has_text(content("b.jsonl"), R"("thickness_kind":"at_most")")) << content("b.jsonl");
+    EXPECT_TRUE(has_text(content("s.json"), R"("undecided_thickness": 0)")) << content("s.json");
+    EXPECT_TRUE(has_text(run(detect + " --chord 0.01 --tolerance 0").err, "classes     1 penetrating"));
+    EXPECT_EQ(run("detect bolt.obj --stage objects --chord 1").status, 2);
 }
 
 TEST_F(Stages, CoarseCoordinatesAreAWarning) {

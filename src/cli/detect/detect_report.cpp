@@ -174,11 +174,26 @@ std::string verified_text(const DetectReport& report) {
     return text + '\n';
 }
 
-/// Returns the number of pairs that filters dropped although the objects may collide: the filters could not decide.
-std::uint64_t undecided_pairs(const DetectReport& report) {
-    std::uint64_t pairs = 0;
-    for (const FilterCounts& filter : report.filters) pairs += filter.undecided;
+/// Number of pairs that filters could not decide.
+struct UndecidedPairs {
+    std::uint64_t open = 0;   ///< one object may be inside the other, an open mesh
+    std::uint64_t thick = 0;  ///< penetrating, because the overlap may be thicker than the tolerance
+};
+UndecidedPairs undecided_pairs(const DetectReport& report) {
+    UndecidedPairs pairs;
+    for (const FilterCounts& filter : report.filters) {
+        (filter.name == "exact feature" ? pairs.thick : pairs.open) += filter.undecided;
+    }
     return pairs;
+}
+
+std::string pairs_text(std::uint64_t pairs) { return fmt::format("{} pair{}", grouped(pairs), pairs == 1 ? "" : "s"); }
+
+/// Returns where the tolerance comes from, in parentheses; empty for --tolerance.
+std::string tolerance_source(const DetectReport& report) {
+    if (!report.tolerance_is_default) return {};
+    if (!report.chord) return " (the precision of float32)";
+    return fmt::format(" (twice the chord error {:.3g})", *report.chord);
 }
 
 /// Returns the lines about the exact stages: classes, tolerance, and objects without an inside.
@@ -191,13 +206,19 @@ std::string exact_text(const DetectReport& report) {
     }
     if (!classes.empty()) text += fmt::format("classes     {}\n", classes);
     if (report.tolerance) {
-        text += fmt::format("tolerance   {:.3g}{}\n", *report.tolerance,
-                            report.tolerance_is_precision ? " (the precision of float32)" : "");
+        text += fmt::format("tolerance   {:.3g}{}\n", *report.tolerance, tolerance_source(report));
+    }
+    const UndecidedPairs undecided = undecided_pairs(report);
+    if (undecided.thick > 0) {
+        text +=
+            fmt::format("undecided   {} penetrating: whether the overlap is thicker than the tolerance is not proven\n",
+                        pairs_text(undecided.thick));
     }
     if (report.open_objects == 0) return text;
-    if (const std::uint64_t undecided = undecided_pairs(report); undecided > 0) {
-        text += fmt::format("undecided   {} pair{} left out: an object is in the bounds of one that is not closed\n",
-                            grouped(undecided), undecided == 1 ? "" : "s");
+    if (undecided.open > 0 && report.of_class[std::size_t(CollisionClass::undecided)] == 0) {
+        text +=
+            fmt::format("undecided   {} left out: an object is in the bounds of one that is not closed (--classes)\n",
+                        pairs_text(undecided.open));
     }
     return text + fmt::format("not closed  {} of {} objects have no inside (--weld joins vertices): {}{}\n",
                               grouped(report.open_objects), grouped(report.objects), fmt::join(report.first_open, ", "),
@@ -331,9 +352,10 @@ std::string stats_json(const DetectReport& report) {
     const nlohmann::ordered_json classes = classes_json(report);
     if (!classes.empty()) stats["classes"] = classes;
     if (report.tolerance) stats["tolerance"] = *report.tolerance;
+    if (report.tolerance > 0) stats["undecided_thickness"] = undecided_pairs(report).thick;
     if (report.open_objects > 0) {
         stats["not_closed"] = report.open_objects;
-        stats["undecided"] = undecided_pairs(report);
+        stats["undecided"] = undecided_pairs(report).open;
     }
     if (!report.unit.empty()) stats["unit"] = report.unit;
     for (const Part& part : report.converted)

@@ -46,14 +46,16 @@ struct DetectReport {
     std::vector<FilterCounts> filters;  ///< counts of each filter, summed over all frames
     std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
     std::optional<double> tolerance;                             ///< tolerance of the exact stages, as a length
-    bool tolerance_is_precision = false;      ///< true: the tolerance is the error of rounding to float32
-    std::uint64_t open_objects = 0;           ///< objects whose geometry is not closed
-    std::vector<std::string> first_open;      ///< names of the first open objects
-    std::string unit;                         ///< unit of all lengths; empty if no input states one
-    std::vector<Part> converted;              ///< the inputs whose coordinates were converted to this unit
-    io::ElementCounts elements;               ///< elements of IFC models among the inputs
-    std::vector<std::string> warnings;        ///< about the inputs, and about rules; each one line
-    std::optional<io::ChangeCounts> changes;  ///< nothing without --baseline
+    bool tolerance_is_default =
+        false;  ///< true: the tolerance follows from the chord error and the error of rounding to float32
+    std::optional<double> chord = {};          ///< chord error of --chord
+    std::uint64_t open_objects = 0;            ///< objects whose geometry is not closed
+    std::vector<std::string> first_open;       ///< names of the first open objects
+    std::string unit;                          ///< unit of all lengths; empty if no input states one
+    std::vector<Part> converted;               ///< the inputs whose coordinates were converted to this unit
+    io::ElementCounts elements;                ///< elements of IFC models among the inputs
+    std::vector<std::string> warnings;         ///< about the inputs, and about rules; each one line
+    std::optional<io::ChangeCounts> changes;   ///< nothing without --baseline
     std::optional<io::StatusCounts> statuses;  ///< nothing without --statuses
     std::optional<EventCounts> events;  ///< nothing without --events; with it, `entries` and `steps` are not known
     std::uint64_t entries = 0;

@@ -96,7 +96,8 @@ private:
     void describe_shapes() {
         if (stage_of(request_) == Stage::features) {
             report_.tolerance = tolerance_of(request_, sets());
-            report_.tolerance_is_precision = !request_.pipeline.tolerance && *report_.tolerance > 0;
+            report_.tolerance_is_default = !request_.pipeline.tolerance && *report_.tolerance > 0;
+            report_.chord = request_.pipeline.chord;
         }
         if (stage_of(request_) == Stage::pairs) return;
         constexpr std::size_t named = 3;

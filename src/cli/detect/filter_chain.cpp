@@ -239,6 +239,8 @@ private:
         ExactOptions options{.margin = request.margin, .tolerance = tolerance_of(request, sets_)};
         options.duplicate_tolerance = request.pipeline.duplicate_tolerance;
         options.max_contacts = request.pipeline.max_contacts.value_or(options.max_contacts);
+        const auto& classes = request.pipeline.classes;
+        options.keep_undecided = classes && classes->test(std::size_t(CollisionClass::undecided));
         const ShapedObjects first = shaped(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
         const ShapedObjects* const other = second ? &*second : nullptr;
@@ -246,21 +248,21 @@ private:
         pipeline_.add(make_oriented_box_filter(first, request.margin, other));
         pipeline_.add(make_exact_object_filter(first, options, other));
         if (stage_of(request) == Stage::features) {
-            if (request.pipeline.min_depth) add_early_depth(first, options, other, *request.pipeline.min_depth);
+            if (request.pipeline.min_depth) add_early_depth(request, first, options, other);
             pipeline_.add(make_exact_feature_filter(first, options, other));
         }
         add_row_filters(request);
     }
 
     /// Adds a filter that applies --min-depth to the findings that the default tolerance gives, unless `options` have this tolerance.
-    // NOLINTNEXTLINE(readability-function-size): the first three parameters are those of every exact filter.
-    void add_early_depth(const ShapedObjects& first, const ExactOptions& options, const ShapedObjects* other,
-                         double min_depth) {
-        ExactOptions standard{.margin = options.margin, .tolerance = default_tolerance_of(sets_)};
+    void add_early_depth(const DetectRequest& request, const ShapedObjects& first, const ExactOptions& options,
+                         const ShapedObjects* other) {
+        ExactOptions standard{.margin = options.margin, .tolerance = default_tolerance_of(request, sets_)};
         standard.max_contacts = 0;
         const double duplicate_tolerance = options.duplicate_tolerance.value_or(options.tolerance);
         if (options.tolerance == standard.tolerance && duplicate_tolerance == standard.tolerance) return;
-        add_choosing(make_early_depth_filter(make_exact_feature_filter(first, standard, other), min_depth));
+        add_choosing(
+            make_early_depth_filter(make_exact_feature_filter(first, standard, other), *request.pipeline.min_depth));
     }
 
     void add_row_filters(const DetectRequest& request) {

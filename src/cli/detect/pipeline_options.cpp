@@ -151,7 +151,9 @@ void add_exact_options(Command& command, PipelineRequest& request) {
         command.add_option(name, parse, what).type_name("LENGTH");
     };
     add_length("--tolerance", request.tolerance,
-               "with --stage features: what a motion of at most this length separates is touching; leaves out nothing");
+               "with --stage features: overlaps that are at most this thick are touching; leaves out nothing");
+    add_length("--chord", request.chord,
+               "error of tessellated curves in the input; the default tolerance becomes twice this");
     add_length("--duplicate-tolerance", request.duplicate_tolerance,
                "with --stage features: farthest corners of duplicates (default: the tolerance)");
     add_length("--min-depth", request.min_depth,
@@ -159,7 +161,7 @@ void add_exact_options(Command& command, PipelineRequest& request) {
     command
         .add_option(
             "--classes", [&request](const std::string& list) { request.classes = parse_classes(list); },
-            "only clearance, collision, touching, penetrating, contained, duplicate (with commas)")
+            "only clearance, collision, touching, penetrating, contained, duplicate, undecided (with commas)")
         .type_name("LIST");
     add_length("--weld", request.weld, "close gaps in meshes: join vertices that are at most this far apart");
 }
@@ -194,17 +196,17 @@ Stage stage_of(const DetectRequest& request) {
     return with_pipeline && !request.events && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
 }
 
-double default_tolerance_of(const SetPair& sets) {
+double default_tolerance_of(const DetectRequest& request, const SetPair& sets) {
     double largest = 0;
     for (const InputSet* set : {&sets.first, sets.second}) {
         if (set != nullptr) largest = std::max(largest, set->scene.largest_rounded);
     }
     constexpr double relative_step = 0x1p-23;
-    return 2 * largest * relative_step;
+    return 2 * request.pipeline.chord.value_or(0) + 2 * largest * relative_step;
 }
 
 double tolerance_of(const DetectRequest& request, const SetPair& sets) {
-    return request.pipeline.tolerance ? *request.pipeline.tolerance : default_tolerance_of(sets);
+    return request.pipeline.tolerance ? *request.pipeline.tolerance : default_tolerance_of(request, sets);
 }
 
 bool has_filters(const DetectRequest& request) {
@@ -236,7 +238,7 @@ std::vector<CollisionClass> classes_of_stage(const DetectRequest& request) {
     } else {
         classes.insert(classes.end(), {CollisionClass::touching, CollisionClass::penetrating});
     }
-    if (!triangles) classes.push_back(CollisionClass::contained);
+    if (!triangles) classes.insert(classes.end(), {CollisionClass::contained, CollisionClass::undecided});
     if (!triangles && stage_of(request) == Stage::features) classes.push_back(CollisionClass::duplicate);
     return classes;
 }
@@ -272,7 +274,8 @@ void check_exact_options(const DetectRequest& request) {
         refuse("--max-contacts: only with --stage features and --objects node");
     }
     for (const auto& [option, value] :
-         {std::pair("--tolerance", request.pipeline.tolerance), std::pair("--min-depth", request.pipeline.min_depth),
+         {std::pair("--tolerance", request.pipeline.tolerance), std::pair("--chord", request.pipeline.chord),
+          std::pair("--min-depth", request.pipeline.min_depth),
           std::pair("--duplicate-tolerance", request.pipeline.duplicate_tolerance)}) {
         if (value && stage_of(request) != Stage::features)
             refuse(fmt::format("{}: only with --stage features", option));

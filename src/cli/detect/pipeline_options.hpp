@@ -30,7 +30,7 @@ struct PipelineRequest {
     std::optional<bool> same_parent;
     std::optional<AdjacentTriangles> adjacent;
     std::optional<std::uint32_t> max_contacts;
-    std::optional<double> tolerance, duplicate_tolerance, min_depth, weld;
+    std::optional<double> tolerance, duplicate_tolerance, chord, min_depth, weld;
     std::optional<ClassSet> classes;  ///< classes of the rows
     std::string baseline;             ///< path of an older result, or empty
     std::string statuses;             ///< path of the file of statuses to read and write, or empty
@@ -66,9 +66,10 @@ Stage stage_of(const DetectRequest& request);
 /// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request);
 
-/// Returns the tolerance without --tolerance: 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene). This is two to four
-/// steps of float32 at this coordinate. Returns 0 if no coordinate was rounded.
-double default_tolerance_of(const SetPair& sets);
+/// Returns the tolerance without --tolerance. With --chord it is twice the chord error, because both surfaces of an overlap may err; plus the
+/// error of rounding. That is 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two to four steps of float32
+/// at this coordinate. It is 0 if no coordinate was rounded.
+double default_tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns the value of --tolerance, or the default.
 double tolerance_of(const DetectRequest& request, const SetPair& sets);

@@ -69,8 +69,13 @@ io::LoadedScene read_part(const std::string& path, const io::SceneContent& conte
 
 Part part_of(const std::string& path, const io::LoadedScene& scene) {
     const bool converted = !scene.converted_from.empty();
-    return {path, scene.objects, io::is_mesh_file(path) || io::is_json_file(path),
-            converted ? scene.converted_from : scene.space.unit, scene.converted_from, scene.project, scene.root};
+    return {path,
+            scene.objects,
+            io::is_mesh_file(path) || io::is_json_file(path),
+            converted ? scene.converted_from : scene.space.unit,
+            scene.converted_from,
+            scene.project,
+            scene.root};
 }
 
 /// A file from which a range of objects can be read. Only .npy files are read in part; others are read whole.

@@ -16,9 +16,9 @@ namespace octopair::cli {
 struct Part {
     std::string path;
     std::uint64_t objects;
-    bool is_model = false;            ///< false: a file of boxes
-    std::string unit = {};            ///< unit that the file states; empty if unknown
-    std::string converted_from = {};  ///< this unit, if the coordinates were converted to that of the set
+    bool is_model = false;                ///< false: a file of boxes
+    std::string unit = {};                ///< unit that the file states; empty if unknown
+    std::string converted_from = {};      ///< this unit, if the coordinates were converted to that of the set
     std::string project = {}, root = {};  ///< LoadedScene::project, LoadedScene::root
 };
 

@@ -50,11 +50,19 @@ void add_contacts(Json& row, const Finding& finding, std::size_t most) {
     if (finding.more_contacts) row["more_contacts"] = true;
 }
 
+void add_thickness(Json& row, const Finding& finding) {
+    constexpr std::array<std::string_view, 4> words = {"", "at_most", "at_least", "undecided"};
+    if (finding.thickness_kind == ThicknessKind::unknown) return;
+    row["thickness_kind"] = words[std::size_t(finding.thickness_kind)];
+    if (finding.thickness_kind != ThicknessKind::undecided) row["thickness"] = finding.thickness;
+}
+
 void add_finding(Json& row, const Finding& finding) {
     row["class"] = class_words[std::size_t(finding.collision_class)];
     if (finding.collision_class > CollisionClass::clearance && finding.collision_class != CollisionClass::undecided) {
         add_depth(row, finding);
-    } else {
+        add_thickness(row, finding);
+    } else if (finding.collision_class != CollisionClass::undecided) {
         row["distance"] = finding.distance;
     }
     if (finding.collision_class == CollisionClass::clearance && finding.nearest[0] != finding.nearest[1]) {
