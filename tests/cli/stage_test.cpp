@@ -182,7 +182,7 @@ TEST_F(Stages, ResultsAreHeldAgainstABaseline) {
     EXPECT_TRUE(has_text(fewer.err, "\nchanges     0 new, 1 same, 2 gone\n"));
     EXPECT_EQ(nlohmann::json::parse(content("s.json"))["gone"], 2);
     EXPECT_TRUE(has_text(content("p.csv"),
-                         "0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,flat,through,t.obj,t.obj,same\n0,1,"));
+                         "0,2,t.obj/flat,t.obj/through,collision,,,,,,,,ab,,,flat,through,t.obj,t.obj,same\n0,1,"));
     // The result is the next baseline. Rows that are marked as gone are not part of that baseline.
     ASSERT_EQ(run("detect t.obj --baseline old.jsonl --output p.jsonl --quiet").status, 0);
     ASSERT_EQ(run("detect t.obj --baseline p.jsonl --margin 0.5 --stats s.json --output q.npy --quiet").status, 0);

@@ -130,7 +130,8 @@ void append(SceneContents& contents, SceneContents&& other) {
     contents.objects = growth.after;
     contents.moving |= other.moving;
     if (contents.up != other.up) contents.up.clear();
-    if (contents.unit != other.unit) contents.unit.clear();
+    if (contents.unit.empty())
+        contents.unit = other.unit;  // all inputs with a unit have been converted to that of the first
 }
 
 /// Returns the name of each path: its last part, or the whole path if two files have the same last part.
@@ -168,6 +169,7 @@ void add_facts(SceneContents& contents, const DetectRequest& request, const SetP
     if (request.pipeline.min_depth) {
         contents.facts.push_back({"least depth", 0, fmt::format("{}", *request.pipeline.min_depth)});
     }
+    if (const auto& classes = request.pipeline.classes) contents.facts.push_back({"classes", 0, class_list(*classes)});
     if (request.limit) contents.facts.push_back({"limit", 0, fmt::format("the first {}", *request.limit)});
     for (const auto& [name, path] : {std::pair("excluded by", &request.pipeline.exclude),
                                      std::pair("compared with", &request.pipeline.baseline)}) {
