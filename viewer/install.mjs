@@ -1,15 +1,17 @@
-// Makes the libraries of the page available: node install.mjs FOLDER [WORK]
+// Makes the libraries of the page available: node install.mjs FOLDER [WORK [SOURCES]]
 //
 // FOLDER  has one folder of installed libraries for each package-lock.json, named by the hash of that file. The libraries are
 //         installed with npm if they are missing. Several processes may do this at the same time.
 // WORK    gets a link node_modules to the libraries.
+// SOURCES has the package-lock.json; without it, it is the page's.
 import {spawnSync} from 'node:child_process';
 import {createHash} from 'node:crypto';
 import {copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, renameSync, rmSync, symlinkSync} from 'node:fs';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
-const sources = dirname(fileURLToPath(import.meta.url)), files = ['package.json', 'package-lock.json'];
+const [folder, work, sources = dirname(fileURLToPath(import.meta.url))] = process.argv.slice(2);
+const files = ['package.json', 'package-lock.json'];
 
 function fail(message) {
   console.error(`viewer/install.mjs: ${message}`);
@@ -39,11 +41,10 @@ function install(folder, installed) {
   }
   rmSync(part, {recursive: true, force: true});
   if (error) fail(`cannot run npm: ${error.message}`);
-  if (status !== 0) fail('npm ci failed; it needs its registry once: "scripts/setup viewer" installs the libraries');
+  if (status !== 0) fail('npm ci failed; it needs its registry once: "scripts/setup viewer" installs the libraries of the page');
 }
 
-const [folder, work] = process.argv.slice(2);
-if (!folder) fail('usage: node install.mjs FOLDER [WORK]');
+if (!folder) fail('usage: node install.mjs FOLDER [WORK [SOURCES]]');
 if (Number(process.versions.node.split('.')[0]) < 18) fail(`node has version ${process.versions.node}, and the page needs 18 or newer`);
 const installed = join(resolve(folder), folderName());
 if (!existsSync(installed)) install(resolve(folder), installed);
