@@ -83,6 +83,7 @@ LONG_STAGES = {f"long-{preset}": Stage(preset, ("-L", "exactness"), EXACTNESS, (
 LONG_STAGES["long-files"] = Stage("release", ("-L", "generated"), ("octopair_io_test",), share=2000)
 LONG_STAGES["long-near-misses"] = Stage("release", ("-L", "near_miss"),
                                         ("octopair_near_miss_reader", "octopair_program", "octopair_change_at_call"), share=5000)
+LONG_STAGES["long-assemblies"] = Stage("release", ("-L", "assemblies"), ("octopair_program",))
 LONG_STAGES["long-packages"] = dataclasses.replace(STAGES["packages"], from_source=True)
 ALONE = ("ranks", "clang-ranks", "asan-ranks", "timing")
 
