@@ -66,7 +66,7 @@ export class Table {
     this.columns = [
       {title: () => 'class', style: 'class', text: row => row.class && row.class !== 'unknown' ? row.class : ''},
       {title: unit => this.measureTitle(unit), style: 'number', text: row => measureOf(row)?.short ?? ''},
-      {title: unit => `thickness${unit}`, style: 'number', text: thicknessOf},
+      {title: unit => `thickness${unit}`, style: 'number thickness', text: thicknessOf},
       {title: () => 'time', style: 'number', text: row => row.time === undefined ? '' : String(Number(row.time.toPrecision(4)))},
       {title: () => 'change', style: 'change', text: row => this.changeText(row)},
     ];

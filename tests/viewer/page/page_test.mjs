@@ -301,7 +301,10 @@ test('rows have a thickness where it is known, and labels that tell objects apar
   await page.route('**/names.json', route => route.fulfill({json: scene.names.map((_, k) => nameOf(k))}));
   await page.reload();
   await complete(page);
-  assert.match(await text(page, '#head'), /thickness \(m\)/);
+  const head = page.locator('#head th', {hasText: 'thickness (m)'});
+  assert.equal(await head.isVisible(), false, 'in a narrow list, the labels need the room');
+  await page.setViewportSize({width: 1700, height: 900});
+  assert.equal(await head.isVisible(), true);
   const cells = await page.locator('#rows td:last-child').allInnerTexts();
   assert.deepEqual(cells, cells.map((_, k) => ['≤ 0.25', '≥ 0.25', '?'][k % 3]));
   await page.locator('#rows tr').first().click();
