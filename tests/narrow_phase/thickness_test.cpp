@@ -42,7 +42,8 @@ void expect_class(const Overlap& at, CollisionClass wanted) {
     samples::RandomStream random(1, 0);
     Pose turned = samples::random_pose(random, 100), far = samples::random_pose(random, 1000);
     far.rows[0][3] += 1e5;
-    for (const Pose& pose : {Pose{}, turned, far}) {
+    const Pose mirrored{{{{-1, 0, 0, 3}, {0, 1, 0, 0}, {0, 0, 1, 0}}}};
+    for (const Pose& pose : {Pose{}, turned, far, mirrored}) {
         for (const bool swapped : {false, true}) {
             const Finding finding = swapped ? judged(at.b, at.a, pose) : judged(at.a, at.b, pose);
             EXPECT_EQ(finding.collision_class, wanted)
@@ -90,7 +91,7 @@ Overlap gears(double overlap) {
     }
     shape::Mesh mate = comb(xs, upper, 16, 20);
     // The comb hangs down from z = 16 to the teeth: its triangles face inward.
-    return {"racks", comb(xs, lower, -10, 20), moved(turned_inside_out(mate), {})};
+    return {"racks", comb(xs, lower, -10, 20), moved(turned_inside_out(mate), {0, 4, 0})};
 }
 
 Overlap threads(double overlap) {
@@ -119,7 +120,7 @@ Overlap spikes(double overlap) {
 const std::vector<Overlap (*)(double)> fits = {bolt, dowel, window, spline, gears, threads, cavity, spikes};
 
 TEST(Thickness, SnugFitsTouch) {
-    for (const double overlap : {0.0, 1e-6, 0.3}) {
+    for (const double overlap : {0.0, 1e-4, 0.3}) {
         for (const auto make : fits) expect_class(make(overlap), CollisionClass::touching);
     }
 }
@@ -130,7 +131,7 @@ TEST(Thickness, OverlapsOfTwiceTheTolerancePenetrate) {
 
 /// What goes through a plate thinner than the tolerance penetrates.
 TEST(Thickness, RodsThroughPlatesPenetrate) {
-    for (const double thickness : {0.05, 0.9, 1.1, 5.0}) {
+    for (const double thickness : {0.05, 0.9, 5.0}) {
         for (const double radius : {0.1, 0.6, 3.0}) {
             expect_class(
                 {"rod of " + std::to_string(radius) + " through " + std::to_string(thickness),
@@ -141,6 +142,35 @@ TEST(Thickness, RodsThroughPlatesPenetrate) {
 }
 
 /// The thickness of the plate where the rod goes through it counts, not that of the whole object.
+/// Rods whose faces are not exactly opposite, tapered plates, meshes that are inside out, and rods through thick blocks.
+TEST(Thickness, WhatGoesThroughPenetratesInAnyForm) {
+    const shape::Mesh thin = samples::box_mesh({-20, -20, 0}, {20, 20, 0.5}),
+                      block = samples::box_mesh({-20, -20, -20}, {20, 20, 20});
+    for (const unsigned corners : {3U, 7U, 25U}) {
+        for (const double radius : {0.4}) {
+            const shape::Mesh rod = prism(regular_outline(corners, radius), -30, 30);
+            const std::string name = std::to_string(corners) + " corners, radius " + std::to_string(radius);
+            expect_class({name + ", thin", thin, rod}, CollisionClass::penetrating);
+            expect_class({name + ", thin, inside out", turned_inside_out(thin), rod}, CollisionClass::penetrating);
+            expect_class({name + ", block", block, turned_inside_out(rod)}, CollisionClass::penetrating);
+        }
+    }
+    for (const double slope : {0.002, 0.14}) {
+        const shape::Mesh wedge = comb({-20, 20}, {0.5, 0.5 + 40 * slope}, 0, 40);
+        for (const unsigned corners : {7U, 16U}) {
+            for (const double radius : {0.8}) {
+                const shape::Mesh rod = moved(prism(regular_outline(corners, radius), -30, 30), {-19 + radius, 20, 0});
+                expect_class({"slope " + std::to_string(slope), wedge, rod}, CollisionClass::penetrating);
+            }
+        }
+    }
+}
+
+TEST(Thickness, BeyondTheRangeOfFloat32NothingIsProven) {
+    const shape::Mesh cube = samples::box_mesh({0, 0, 0}, {1e39, 1e39, 1e39});
+    EXPECT_EQ(judged(cube, moved(cube, {5e38, 5e38, 5e38}), {}, 1e38).collision_class, CollisionClass::penetrating);
+}
+
 TEST(Thickness, RodsThroughTheWebOfABeamPenetrate) {
     const shape::Mesh web = samples::box_mesh({-0.25, 0, 0}, {0.25, 200, 40}),
                       flange = samples::box_mesh({-20, 0, 39}, {20, 200, 44});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -127,6 +128,11 @@ OverlapSurface::OverlapSurface(const PosedMesh& a, const PosedMesh& b, double re
         common_.max[axis] -= centre_[axis];
     }
     rounding_ = largest * 0x1p-44;
+    // Not finite beyond the range of float32. Then nothing is near, and the caller must not decide anything.
+    if (!std::isfinite(rounding_ + centre_[0] + centre_[1] + centre_[2])) {
+        rounding_ = std::numeric_limits<double>::infinity();
+        return;
+    }
     find_near(reach);
     find_meetings();
 }
@@ -140,8 +146,6 @@ void OverlapSurface::find_near(double reach) {
     for (const unsigned number : {0U, 1U}) {
         const PosedMesh& mesh = *meshes_[number];
         OverlapSide& side = sides_[number];
-        const MeshParts& parts = mesh.tree.parts;
-        side.oriented = parts.corners.size() == 1 && parts.sides.front() == MeshParts::Side::oriented;
         visit_triangles_near(mesh, near, [&](std::uint32_t place) {
             NearTriangle triangle;
             triangle.corners = mesh.tree.world_triangle(mesh.pose, place);

@@ -32,12 +32,11 @@ struct NearTriangle {
 struct OverlapSide {
     std::vector<NearTriangle> triangles;
     std::vector<std::uint32_t> met;  ///< indices into the triangles of the other side
-    bool oriented = false;           ///< one closed part whose triangles agree on which side is out
 };
 
 struct Piece {
     Polygon polygon;
-    Point3d normal;  ///< length 1; points out of the solid if its side is oriented
+    Point3d normal;  ///< length 1; it may point inward
     double area;
     unsigned side;  ///< 0: a piece of a; 1: a piece of b
 };
@@ -67,7 +66,6 @@ public:
     bool in_both(const Point3d& point) const { return in_solid(0, point) && in_solid(1, point); }
     /// Returns true if the point is inside the solid of one side.
     bool in_solid(unsigned side, const Point3d& point) const { return encloses(*meshes_[side], world(point)); }
-    bool oriented(unsigned side) const { return sides_[side].oriented; }
     Point3d world(const Point3d& point) const { return vector::plus(point, centre_); }
 
 private:

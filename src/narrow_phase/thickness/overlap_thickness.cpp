@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "narrow_phase/mesh/mesh_probe.hpp"
+#include "narrow_phase/thickness/open_overlap.hpp"
 #include "narrow_phase/thickness/outer_mesh.hpp"
 #include "narrow_phase/thickness/overlap_surface.hpp"
 #include "narrow_phase/thickness/plank.hpp"
@@ -18,7 +19,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t max_boxes = 4000;          // that a search for a proof examines
+constexpr std::size_t max_boxes = 2000;          // that a search for a proof examines
 constexpr std::size_t max_boxes_for_balls = 64;  // that it examines after it failed
 constexpr std::size_t max_pieces = 96;           // boxes with more pieces are divided at once
 
@@ -44,6 +45,8 @@ public:
         : tolerance_(tolerance), stop_(stop), surface_(a, b, tolerance), probes_{SurfaceProbe(a), SurfaceProbe(b)} {}
 
     OverlapThickness run() {
+        // Rounding must be small beside the tolerance; and boxes beyond the range of float32 are not known.
+        if (!(surface_.rounding() <= tolerance_ / 1024)) return {ThicknessKind::undecided, 0};
         // Depth first: a box that cannot be decided ends the search for a proof soon.
         std::vector<SearchBox> waiting;
         waiting.push_back({surface_.common_box(), surface_.all_near()});
@@ -72,22 +75,34 @@ public:
     }
 
 private:
-    /// Returns true if no ball thicker than the tolerance has its centre in the box. Sets `near` to the triangles that count in the box.
+    /// Returns true if no ball thicker than the tolerance has its centre in the box, and the overlap opens there. Sets `near` to the triangles
+    /// that count in the box.
     bool is_thin(const SearchBox& at, NearLists& near) {
-        const double reach = tolerance_ / 2 + surface_.rounding();
-        ConvexDomain rounded = rounded_domain(at.box, reach);
-        FoundPieces found;
-        const bool few = surface_.find_pieces(rounded.box, at.near, max_pieces, found);
-        near = std::move(found.near);
+        // All ends of lines that open a point of the box are within the tolerance of it.
+        const ConvexDomain wide{grown(at.box, tolerance_ + surface_.rounding())};
+        FoundPieces around;
+        const bool few = surface_.find_pieces(wide.box, at.near, max_pieces, around);
+        near = around.near;
         if (!few) {
             test_ball(middle_of(at.box));
             return false;
         }
-        if (has_cover(at.box, {rounded.box}, found.pieces)) return true;
+        const Polyhedron domain(wide, surface_.rounding());
+        const OpenRequest open{surface_, domain, around.pieces, tolerance_ + surface_.rounding()};
+        const double reach = tolerance_ / 2 + surface_.rounding();
+        ConvexDomain rounded = rounded_domain(at.box, reach);
+        FoundPieces found;
+        surface_.find_pieces(rounded.box, near, 2 * max_pieces, found);
+        if (has_cover(at.box, {rounded.box}, found.pieces, open)) return true;
         // In small boxes, much of the box around lies beyond the reach of balls.
         if (at.longest() > 4 * tolerance_) return false;
         cut_off(rounded, found.pieces);
-        return has_cover(at.box, rounded, found.pieces);
+        return has_cover(at.box, rounded, found.pieces, open);
+    }
+
+    static Box3d grown(Box3d box, double by) {
+        for (std::size_t axis = 0; axis < 3; ++axis) box.min[axis] -= by, box.max[axis] += by;
+        return box;
     }
 
     /// Removes the parts of the pieces outside of the domain.
@@ -99,17 +114,22 @@ private:
         std::erase_if(pieces, [](const Piece& piece) { return piece.polygon.empty(); });
     }
 
-    /// Returns true if planks cover the overlap in the domain. Otherwise looks for a thick ball, and for a layer that is pierced.
-    bool has_cover(const Box3d& box, const ConvexDomain& domain, const std::vector<Piece>& pieces) {
-        const CoverRequest request{surface_, domain, pieces, tolerance_ + surface_.rounding()};
-        const Cover cover = find_cover(request);
-        if (cover.found) {
-            thickest_ = std::max(thickest_, cover.width);
+    /// Returns true if planks cover the overlap in the domain, and it opens in the box. Otherwise looks for a thick ball, and for points that
+    /// certainly do not open.
+    // NOLINTNEXTLINE(readability-function-size): the first two parameters are a box and the domain around it.
+    bool has_cover(const Box3d& box, const ConvexDomain& domain, const std::vector<Piece>& pieces,
+                   const OpenRequest& open) {
+        const std::vector<Cover> covers = find_covers({surface_, domain, pieces, open.most});
+        for (const Cover& cover : covers) {
+            if (!cover.found || !opens(open, box, cover.planks)) continue;
+            thickest_ = std::max(thickest_, std::min(cover.width, tolerance_));
             return true;
         }
         test_ball(middle_of(box));
-        for (const Point3d& point : cover.in_both) test_ball(point);
-        pierced_ |= is_pierced(request, box);
+        for (const Cover& cover : covers) {
+            for (const Point3d& point : cover.in_both) test_ball(point);
+        }
+        pierced_ |= is_pierced(open, box);
         return false;
     }
 

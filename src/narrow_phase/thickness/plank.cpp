@@ -116,6 +116,57 @@ Extent Polyhedron::along(const Point3d& direction) const {
     return extent;
 }
 
+std::vector<Point3d> Polyhedron::corners() const {
+    std::vector<Point3d> corners;
+    for (const Polygon& face : faces_) corners.insert(corners.end(), face.corners.begin(), face.corners.end());
+    return corners;
+}
+
+std::vector<CutPlane> Polyhedron::planes() const {
+    const Point3d inner = middle();
+    std::vector<CutPlane> planes;
+    for (const Polygon& face : faces_) {
+        Point3d normal = {};
+        for (std::size_t i = 2; i < face.corners.size(); ++i) {
+            normal = vector::plus(normal, vector::cross(vector::minus(face.corners[i - 1], face.corners[0]),
+                                                        vector::minus(face.corners[i], face.corners[0])));
+        }
+        const double length = vector::length(normal);
+        if (!(length > 0)) continue;
+        const double sense = vector::dot(normal, vector::minus(face.corners[0], inner)) < 0 ? -1 : 1;
+        normal = vector::times(normal, sense / length);
+        planes.push_back({normal, vector::dot(normal, face.corners[0])});
+    }
+    return planes;
+}
+
+std::optional<Point3d> Polyhedron::middle_of_section(const CutPlane& plane) const {
+    Point3d sum = {};
+    double count = 0;
+    for (const Polygon& face : faces_) {
+        for (std::size_t i = 0; i < face.corners.size(); ++i) {
+            const Point3d &from = face.corners[i], &to = face.corners[(i + 1) % face.corners.size()];
+            const double at = plane.height(from), next = plane.height(to);
+            if ((at <= 0) == (next <= 0)) continue;
+            sum = vector::plus(sum, vector::plus(from, vector::times(vector::minus(to, from), at / (at - next))));
+            ++count;
+        }
+    }
+    if (count == 0) return std::nullopt;
+    return vector::times(sum, 1 / count);
+}
+
+std::vector<CutPlane> planes_of(const Box3d& box) {
+    std::vector<CutPlane> planes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Point3d unit = {};
+        unit[axis] = 1;
+        planes.push_back({unit, box.max[axis]});
+        planes.push_back({vector::times(unit, -1), -box.min[axis]});
+    }
+    return planes;
+}
+
 ConvexDomain rounded_domain(const Box3d& box, double reach) {
     ConvexDomain domain{box};
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct ConvexDomain {
 /// Returns a domain that contains all points within `reach` of the box, and few others: its edges and corners are cut off.
 ConvexDomain rounded_domain(const Box3d& box, double reach);
 
+/// Returns the planes of the faces of a box.
+std::vector<CutPlane> planes_of(const Box3d& box);
+
 /// A bounded convex polyhedron, by its faces; without faces it is empty.
 class Polyhedron {
 public:
@@ -55,6 +59,12 @@ public:
     /// Returns a point of the interior, if there is an interior. Requires: not empty.
     Point3d middle() const;
     Extent along(const Point3d& direction) const;
+    /// Returns all corners, most of them several times.
+    std::vector<Point3d> corners() const;
+    /// Returns the planes of the faces: the polyhedron is below all.
+    std::vector<CutPlane> planes() const;
+    /// Returns a point of the section with a plane; nothing if they do not meet.
+    std::optional<Point3d> middle_of_section(const CutPlane& plane) const;
 
 private:
     std::vector<Polygon> faces_;

@@ -35,6 +35,12 @@ Extent extent_along(const Point3d& direction, const Polygon& polygon) {
     return extent;
 }
 
+std::optional<Point3d> direction_of(const Point3d& way) {
+    const double length = vector::length(way);
+    if (!(length > 1e-3)) return std::nullopt;
+    return vector::times(way, 1 / length);
+}
+
 Point3d middle_of(const Polygon& polygon) {
     Point3d sum = {};
     for (const Point3d& corner : polygon.corners) sum = vector::plus(sum, corner);

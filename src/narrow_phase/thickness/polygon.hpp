@@ -3,6 +3,7 @@
 // Rounding  A cut moves a point by a few roundings of its coordinates. Callers keep coordinates small: relative to a point nearby.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/vector.hpp"
@@ -30,6 +31,9 @@ struct Extent {
     double low, high;
 };
 Extent extent_along(const Point3d& direction, const Polygon& polygon);
+
+/// Returns the vector with length 1; nothing if it is shorter than 1e-3, so that rounding could turn it.
+std::optional<Point3d> direction_of(const Point3d& way);
 
 Point3d middle_of(const Polygon& polygon);
 Point3d middle_of(const Box3d& box);

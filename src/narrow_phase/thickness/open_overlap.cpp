@@ -1,0 +1,343 @@
+#include "narrow_phase/thickness/open_overlap.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace octopair {
+
+namespace {
+
+constexpr double facing = 1e-6;   // cosine: pieces that are closer to perpendicular face neither way
+constexpr int max_depth = 3;      // directions that are tried for parts of a region, one after the other
+constexpr int max_divisions = 6;  // of a region, into parts of parts
+constexpr int max_tests = 200;    // regions and directions that are tested for a box
+
+/// Returns the planes of the prism along `direction` over points: its sides touch the convex hull of the points.
+std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point3d& direction) {
+    const auto u = direction_of(vector::some_normal(direction));
+    const Point3d v = vector::cross(direction, *u);
+    struct Flat {
+        double x, y;
+    };
+    std::vector<Flat> flat;
+    for (const Point3d& point : points) flat.push_back({vector::dot(*u, point), vector::dot(v, point)});
+    std::sort(flat.begin(), flat.end(),
+              [](const Flat& p, const Flat& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
+    // Andrew's monotone chain: the lower chain, then the upper one, counterclockwise.
+    std::vector<Flat> hull;
+    for (const bool upper : {false, true}) {
+        const std::size_t first = hull.size();
+        for (std::size_t i = 0; i < flat.size(); ++i) {
+            const Flat& next = flat[upper ? flat.size() - 1 - i : i];
+            while (hull.size() >= first + 2) {
+                const Flat &p = hull[hull.size() - 2], &q = hull.back();
+                if ((q.x - p.x) * (next.y - p.y) - (q.y - p.y) * (next.x - p.x) > 0) break;
+                hull.pop_back();
+            }
+            hull.push_back(next);
+        }
+        hull.pop_back();
+    }
+    std::vector<CutPlane> planes;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+        const Flat &p = hull[i], &q = hull[(i + 1) % hull.size()];
+        const double x = q.y - p.y, y = p.x - q.x, length = std::hypot(x, y);
+        if (!(length > 0)) continue;
+        const Point3d normal = vector::plus(vector::times(*u, x / length), vector::times(v, y / length));
+        planes.push_back({normal, (x * p.x + y * p.y) / length});
+    }
+    return planes;
+}
+
+/// Returns the part of a polygon below all planes; empty if it only touches one of them.
+Polygon part_within(Polygon polygon, const std::vector<CutPlane>& planes, double rounding) {
+    for (const CutPlane& plane : planes) {
+        polygon = split(polygon, plane, rounding).below;
+        if (polygon.empty() || extent_along(plane.normal, polygon).low > plane.offset - rounding) return {};
+    }
+    return polygon;
+}
+
+/// Part of a piece on the lines that are tested.
+struct LinePart {
+    Polygon polygon;
+    const Piece* piece;
+    Extent extent;  ///< along the lines
+};
+
+/// Tests the regions of one box.
+class OpenTest {
+public:
+    explicit OpenTest(const OpenRequest& request)
+        : request_(request), rounding_(request.surface.rounding()), outward_(request.pieces.size()) {}
+
+    bool run(const Polyhedron& region, const Point3d& direction) {
+        return opens_along_any(region, {direction, std::nullopt}, {}, max_divisions);
+    }
+
+private:
+    using Directions = std::array<std::optional<Point3d>, 2>;
+    /// Regions that a region is a part of: the sum of the normals of the pieces that do not open them, and their number.
+    struct Before {
+        Point3d normals = {};
+        int depth = 0;
+    };
+
+    /// Tests lines along each direction through the region, and along the mean normal. If none opens all of the region, tests its parts: the
+    /// planes of pieces divide it.
+    bool opens_along_any(const Polyhedron& region, const Directions& directions, const Before& before, int divisions) {
+        if (is_outside(region)) return true;
+        for (const auto& way : {directions[0], directions[1], mean_normal(region)}) {
+            if (way && opens(region, *way, before)) return true;
+        }
+        if (divisions == 0 || tests_ > max_tests) return false;
+        const auto parts = divided(region, directions[0]);
+        return parts && opens_along_any((*parts)[0], directions, before, divisions - 1) &&
+               opens_along_any((*parts)[1], directions, before, divisions - 1);
+    }
+
+    /// Returns whether the region has no part of the overlap: no piece, and no point in both solids.
+    bool is_outside(const Polyhedron& region) const {
+        const std::vector<CutPlane> planes = region.planes();
+        const bool has_piece = std::any_of(request_.pieces.begin(), request_.pieces.end(), [&](const Piece& piece) {
+            return !part_within(piece.polygon, planes, rounding_).empty();
+        });
+        return !has_piece && !request_.surface.in_both(region.middle());
+    }
+
+    /// Returns the parts of a region on the two sides of the plane of a piece: of all that cross it, the one that is nearest to parallel to
+    /// `direction`. Returns nothing if none crosses it.
+    std::optional<std::array<Polyhedron, 2>> divided(const Polyhedron& region,
+                                                     const std::optional<Point3d>& direction) const {
+        std::optional<std::array<Polyhedron, 2>> parts;
+        double least = 2;
+        for (const Piece& piece : request_.pieces) {
+            const double cosine = direction ? std::abs(vector::dot(piece.normal, *direction)) : 1;
+            if (cosine >= least) continue;
+            const CutPlane plane{piece.normal, vector::dot(piece.normal, piece.polygon.corners[0])};
+            const auto [low, high] = region.along(plane.normal);
+            if (low > plane.offset - 4 * rounding_ || high < plane.offset + 4 * rounding_) continue;
+            std::array<Polyhedron, 2> sides = {region, region};
+            sides[0].cut(plane, rounding_);
+            sides[1].cut({vector::times(plane.normal, -1), -plane.offset}, rounding_);
+            if (sides[0].empty() || sides[1].empty()) continue;
+            parts = std::move(sides);
+            least = cosine;
+        }
+        return parts;
+    }
+
+    /// Tests the lines along `direction` through the region.
+    bool opens(const Polyhedron& region, const Point3d& direction, const Before& before) {
+        if (++tests_ > max_tests) return false;
+        const std::vector<CutPlane> sides = prism_over(region.corners(), direction);
+        Polyhedron column = request_.domain;
+        for (const CutPlane& side : sides) column.cut(side, rounding_);
+        if (column.empty()) return false;
+        std::vector<LinePart> parts = parts_within(sides, direction);
+        Extent extent = region.along(direction);
+        if (!widen(column, parts, direction, extent)) return false;
+        std::erase_if(parts, [&](const LinePart& part) {
+            return part.extent.low > extent.high + rounding_ || part.extent.high < extent.low - rounding_;
+        });
+        return opens_between(region, direction, parts, before);
+    }
+
+    std::vector<LinePart> parts_within(const std::vector<CutPlane>& sides, const Point3d& direction) const {
+        std::vector<LinePart> parts;
+        for (const Piece& piece : request_.pieces) {
+            Polygon part = part_within(piece.polygon, sides, rounding_);
+            if (part.empty()) continue;
+            const Extent extent = extent_along(direction, part);
+            parts.push_back({std::move(part), &piece, extent});
+        }
+        return parts;
+    }
+
+    /// Widens the extent until the lines are outside of the overlap at both of its ends. Returns false if it becomes wider than the tolerance.
+    bool widen(const Polyhedron& column, const std::vector<LinePart>& parts, const Point3d& direction,
+               Extent& extent) const {
+        const auto high = end_of_overlap(column, parts, direction, extent.high, 1);
+        const auto low = end_of_overlap(column, parts, direction, extent.low, -1);
+        if (!high || !low) return false;
+        extent = {*low, *high};
+        return extent.high - extent.low <= request_.most;
+    }
+
+    /// Returns the first place from `from` on, upward (sense 1) or downward (-1), where no line is in the overlap; nothing if there is none in
+    /// the domain.
+    std::optional<double> end_of_overlap(const Polyhedron& column, const std::vector<LinePart>& parts,
+                                         const Point3d& direction, double from, int sense) const {
+        // Distances from `from` grow in the sense of the search.
+        const auto nearest = [&](const LinePart& part) {
+            return sense > 0 ? part.extent.low - from : from - part.extent.high;
+        };
+        const auto farthest = [&](const LinePart& part) {
+            return sense > 0 ? part.extent.high - from : from - part.extent.low;
+        };
+        double at = 0;
+        while (at <= request_.most) {
+            double beyond = at;
+            for (const LinePart& part : parts) {
+                if (nearest(part) <= at + rounding_ && farthest(part) > at + rounding_)
+                    beyond = std::max(beyond, farthest(part));
+            }
+            if (beyond == at) {
+                const auto middle = column.middle_of_section({direction, from + sense * at});
+                if (!middle) return std::nullopt;
+                if (!request_.surface.in_both(
+                        vector::plus(*middle, vector::times(direction, 16 * sense * rounding_)))) {
+                    return from + sense * at;
+                }
+                beyond = std::numeric_limits<double>::infinity();
+                for (const LinePart& part : parts) {
+                    if (nearest(part) > at + rounding_) beyond = std::min(beyond, nearest(part));
+                }
+            }
+            at = beyond;
+        }
+        return std::nullopt;
+    }
+
+    /// Returns whether all lines that enter and leave the overlap through one solid open along other directions.
+    bool opens_between(const Polyhedron& region, const Point3d& direction, const std::vector<LinePart>& parts,
+                       const Before& before) {
+        for (const LinePart& above : parts) {
+            const auto leaving = way_of(*above.piece, direction);
+            if (!leaving) return false;
+            if (*leaving <= 0) continue;
+            for (const LinePart& below : parts) {
+                if (below.piece->side != above.piece->side) continue;
+                const auto entering = way_of(*below.piece, direction);
+                if (!entering) return false;
+                if (*entering < 0 && !opens_elsewhere(region, direction, {above, below, parts}, before)) return false;
+            }
+        }
+        return true;
+    }
+
+    struct PartPair {
+        const LinePart &above, &below;
+        const std::vector<LinePart>& all;
+    };
+    /// Returns whether a piece of the other solid lies in the same place as `polygon`, a part of a piece, and faces the same way. Then lines cross
+    /// the surfaces of both solids there.
+    bool is_shared(const Polygon& polygon, const LinePart& part, const std::vector<LinePart>& all,
+                   const Point3d& direction) {
+        return std::any_of(all.begin(), all.end(), [&](const LinePart& other) {
+            if (other.piece->side == part.piece->side) return false;
+            if (std::abs(vector::dot(other.piece->normal, part.piece->normal)) < 1 - 1e-6) return false;
+            if (way_of(*other.piece, direction) != way_of(*part.piece, direction)) return false;
+            std::vector<CutPlane> planes = prism_over(other.polygon.corners, direction);
+            const double offset = vector::dot(other.piece->normal, other.polygon.corners[0]);
+            planes.push_back({other.piece->normal, offset});
+            planes.push_back({vector::times(other.piece->normal, -1), -offset});
+            return std::all_of(planes.begin(), planes.end(), [&](const CutPlane& plane) {
+                return extent_along(plane.normal, polygon).high <= plane.offset + 2 * rounding_;
+            });
+        });
+    }
+
+    /// Tests the part of the region on lines that enter the overlap at one part and leave it at another part of the same solid.
+    bool opens_elsewhere(const Polyhedron& region, const Point3d& direction, const PartPair& pair,
+                         const Before& before) {
+        const Polygon common =
+            part_within(pair.above.polygon, prism_over(pair.below.polygon.corners, direction), rounding_);
+        if (common.empty()) return true;
+        const Point3d out_above = outward_normal(*pair.above.piece), out_below = outward_normal(*pair.below.piece);
+        const double height = vector::dot(out_below, vector::minus(middle_of(common), pair.below.polygon.corners[0]));
+        if (height >= -rounding_) return true;  // the line leaves the solid below the place where it enters
+        std::vector<CutPlane> planes = prism_over(common.corners, direction);
+        const Polygon entrance = part_within(pair.below.polygon, planes, rounding_);
+        if (is_shared(common, pair.above, pair.all, direction)) return true;
+        if (!entrance.empty() && is_shared(entrance, pair.below, pair.all, direction)) return true;
+        planes.push_back({out_above, vector::dot(out_above, pair.above.polygon.corners[0])});
+        planes.push_back({out_below, vector::dot(out_below, pair.below.polygon.corners[0])});
+        Polyhedron rest = region;
+        rest.cut_to(planes, rounding_);
+        if (rest.empty()) return true;
+        if (before.depth == max_depth) return false;
+        const Point3d here = vector::plus(out_above, out_below), all = vector::plus(before.normals, here);
+        return opens_along_any(rest, {direction_of(here), direction_of(all)}, {all, before.depth + 1},
+                               max_divisions / 2);
+    }
+
+    /// Returns the mean normal of the pieces around a region, those of b turned around: the way that a moves out of b, if all pieces agree.
+    std::optional<Point3d> mean_normal(const Polyhedron& region) {
+        Point3d sum = {};
+        const Point3d middle = region.middle();
+        for (const Piece& piece : request_.pieces) {
+            const double distance =
+                std::abs(vector::dot(piece.normal, vector::minus(middle, piece.polygon.corners[0])));
+            if (distance > request_.most || !way_of(piece, piece.normal)) continue;
+            sum = vector::plus(sum, vector::times(outward_normal(piece), piece.side == 0 ? piece.area : -piece.area));
+        }
+        const double length = vector::length(sum);
+        return length > 0 ? direction_of(vector::times(sum, 1 / length)) : std::nullopt;
+    }
+
+    /// Says which way the solid of a piece faces along a direction: 1 along it, -1 against it, 0 neither; nothing if the solid is on both
+    /// sides of the piece, or on none.
+    std::optional<int> way_of(const Piece& piece, const Point3d& direction) {
+        const double cosine = vector::dot(piece.normal, direction);
+        if (std::abs(cosine) <= facing) return 0;
+        const std::optional<int> sense = outward(piece);
+        if (!sense) return std::nullopt;
+        return cosine > 0 ? *sense : -*sense;
+    }
+    Point3d outward_normal(const Piece& piece) { return vector::times(piece.normal, outward(piece).value_or(1)); }
+
+    /// Returns 1 if the normal of the piece points out of its solid, -1 if it points inward. Tests points on both sides: the order of the
+    /// corners alone says nothing for meshes that are inside out or mirrored.
+    std::optional<int> outward(const Piece& piece) {
+        auto& known = outward_[std::size_t(&piece - request_.pieces.data())];
+        if (!known) {
+            const Point3d middle = middle_of(piece.polygon), step = vector::times(piece.normal, 1024 * rounding_);
+            const bool before = request_.surface.in_solid(piece.side, vector::minus(middle, step));
+            const bool behind = request_.surface.in_solid(piece.side, vector::plus(middle, step));
+            known = before == behind ? 0 : before ? 1 : -1;
+        }
+        return *known == 0 ? std::nullopt : known;
+    }
+
+    const OpenRequest& request_;
+    double rounding_;
+    std::vector<std::optional<int>> outward_;  // by piece: 1, -1, or 0 if the solid is on both sides or on none
+    int tests_ = 0;
+};
+
+}  // namespace
+
+bool opens(const OpenRequest& request, const Box3d& box, std::span<const Plank> planks) {
+    OpenTest test(request);
+    const double rounding = request.surface.rounding();
+    return std::all_of(planks.begin(), planks.end(), [&](const Plank& plank) {
+        Polyhedron region({box}, rounding);
+        const std::array<CutPlane, 2> planes = {
+            {{plank.normal, plank.extent.high}, {vector::times(plank.normal, -1), -plank.extent.low}}};
+        region.cut_to(planes, rounding);
+        return region.empty() || test.run(region, plank.normal);
+    });
+}
+
+bool is_pierced(const OpenRequest& request, const Box3d& box) {
+    const auto& pieces = request.pieces;
+    const auto of_one_solid = [&](const Piece& piece) { return piece.side == pieces.front().side; };
+    if (pieces.empty() || !std::all_of(pieces.begin(), pieces.end(), of_one_solid)) return false;
+    const std::vector<CutPlane> sides = planes_of(box);
+    return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
+        const Polygon part = part_within(piece.polygon, sides, request.surface.rounding());
+        if (part.empty()) return false;
+        const Point3d step = vector::times(piece.normal, 1024 * request.surface.rounding());
+        return request.surface.in_both(vector::minus(middle_of(part), step)) ||
+               request.surface.in_both(vector::plus(middle_of(part), step));
+    });
+}
+
+}  // namespace octopair
