@@ -64,7 +64,7 @@ _octopair_values() {
         --adjacent:*) words="beyond-shared exclude include" ;;
         --classes:*) words="clearance collision touching penetrating contained duplicate undecided" ;;
         --up:*) words="y z" ;;
-        --unit:*) words="mm cm dm m km in ft" ;;
+        --unit:*) words="um mm cm dm m km in ft" ;;
         --same-parent:*) words="include exclude" ;;
         --objects:WHAT) words="node triangle" ;;
         --index-type:*) words="uint32 uint64" ;;

@@ -63,7 +63,7 @@ function __octopair_values
         case '--up:*'
             printf '%s\n' y z
         case '--unit:*'
-            printf '%s\n' mm cm dm m km in ft
+            printf '%s\n' um mm cm dm m km in ft
         case '--same-parent:*'
             printf '%s\n' include exclude
         case --objects:WHAT

@@ -24,7 +24,7 @@ import time
 WORDS = {
     "--classes": "clearance collision touching penetrating contained duplicate undecided",
     "--stage": "pairs objects features", "--adjacent": "beyond-shared exclude include", "--up": "y z",
-    "--unit": "mm cm dm m km in ft", "--same-parent": "include exclude", "--objects WHAT": "node triangle",
+    "--unit": "um mm cm dm m km in ft", "--same-parent": "include exclude", "--objects WHAT": "node triangle",
     "--index-type": "uint32 uint64", "--order": "ascending octal", "--log": "text json",
     "--log-level": "debug info warn error",
 }

@@ -383,6 +383,7 @@ TEST_F(Bcf, AnElementThatMeetsManyIsOneTopic) {
     EXPECT_EQ(floor["selection"][0], "00000000000000000000F1");
     EXPECT_EQ(floor["status"], "new") << "the least decided of all";
     EXPECT_EQ(floor["comments"].size(), 3u);
+    EXPECT_LT(floor["place"][2], 3) << "the camera shows the deepest contact, not the whole floor";
     EXPECT_TRUE(has_text(floor["description"], "\nD8 (IfcColumn): penetrating, "));
 }
 
@@ -395,6 +396,10 @@ TEST_F(Bcf, ObjectsWithoutIfcIdsHaveTheirKeys) {
     EXPECT_EQ(topic["selection"], json::array({"1:a", "1:b"}));
     EXPECT_EQ(topic["description"], "clearance, 0.0005 m apart, at (0.00125, 0, 0)");
     EXPECT_GT(topic["up"][1], 0.5);
+    for (const std::string unit : {"um", "µm"}) {
+        ASSERT_EQ(run("detect balls.json --margin 1 --output r.bcf --unit " + unit + " --quiet").status, 0);
+        EXPECT_EQ(topics("r.bcf").at(0)["description"], "clearance, 5e-07 m apart, at (1.25e-06, 0, 0)");
+    }
     EXPECT_EQ(run("detect balls.json --output none.bcf --quiet").status, 0);
     EXPECT_EQ(topics("none.bcf"), json::array()) << "without collisions, a file without topics";
     ASSERT_EQ(shell("cp balls.json more.json").status, 0);

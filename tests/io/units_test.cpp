@@ -42,6 +42,9 @@ TEST(Units, AreFoundByTheirLength) {
     EXPECT_EQ(io::unit_of_metres(0.3048), "ft");
     EXPECT_EQ(io::unit_of_metres(1), "m");
     EXPECT_EQ(io::unit_of_metres(2), "");
+    EXPECT_EQ(io::metres_of("ft"), 0.3048);
+    EXPECT_EQ(io::metres_of("µm"), 1e-6);
+    EXPECT_FALSE(io::metres_of("yard"));
 }
 
 class UnitOfFile : public ::testing::Test {

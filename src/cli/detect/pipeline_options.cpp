@@ -111,8 +111,8 @@ void add_unit_option(Command& command, PipelineRequest& request, const std::stri
         .add_option(
             "--unit",
             [&request](const std::string& word) {
-                check_value("--unit", {"mm", "cm", "dm", "m", "km", "in", "ft"}, word);
-                request.space.unit = word;
+                check_value("--unit", {"um", "mm", "cm", "dm", "m", "km", "in", "ft"}, word == "µm" ? "um" : word);
+                request.space.unit = word == "um" ? "µm" : word;
             },
             description)
         .type_name("UNIT");
@@ -180,7 +180,7 @@ void add_report_options(Command& command, PipelineRequest& request) {
                   "axis that points up in the report and in BCF: y or z (default: that of the file, or z)");
     add_unit_option(
         command, request,
-        "unit of lengths in the report and in BCF: mm, cm, dm, m, km, in or ft (default: that of the file)");
+        "unit of lengths in the report and in BCF: um, mm, cm, dm, m, km, in or ft (default: that of the file)");
 }
 
 std::optional<std::string> input_of_boxes(const DetectRequest& request) {

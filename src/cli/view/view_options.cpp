@@ -46,7 +46,7 @@ void add_page_options(Command& command, ViewRequest& request) {
     command.begin_section("Page");
     add_up_option(command, request.detect.pipeline, "axis that points up: y or z (default: that of the file, or z)");
     add_unit_option(command, request.detect.pipeline,
-                    "unit of lengths: mm, cm, dm, m, km, in or ft (default: that of the file)");
+                    "unit of lengths: um, mm, cm, dm, m, km, in or ft (default: that of the file)");
     command
         .add_option(
             "--port",

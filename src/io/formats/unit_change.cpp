@@ -36,6 +36,11 @@ std::string unit_of_metres(double metres) {
     return {};
 }
 
+std::optional<double> metres_of(std::string_view unit) {
+    const std::int64_t length = micrometres(unit);
+    return length == 0 ? std::nullopt : std::optional(double(length) / 1e6);
+}
+
 UnitChange::UnitChange(std::string_view from, std::string_view to) {
     const std::int64_t old_unit = micrometres(from), new_unit = micrometres(to);
     if (old_unit == 0 || new_unit == 0) return;

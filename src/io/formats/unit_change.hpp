@@ -1,6 +1,7 @@
 // UnitChange: converts lengths from one unit to another.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace octopair::io {
 
 /// Returns the unit that measures this many metres, for example "mm" for 0.001; empty if none is known.
 std::string unit_of_metres(double metres);
+
+/// Returns the length of a unit in metres, for example 0.001 for "mm"; nothing if the unit is not known.
+std::optional<double> metres_of(std::string_view unit);
 
 class UnitChange {
 public:

@@ -13,19 +13,12 @@
 #include <xxhash.h>
 
 #include "geometry/vector.hpp"
+#include "io/formats/unit_change.hpp"
 #include "io/results/collision_key.hpp"
 
 namespace octopair::io {
 
 namespace {
-
-double metres_of(std::string_view unit) {
-    constexpr std::pair<std::string_view, double> units[] = {{"mm", 1e-3}, {"cm", 1e-2},   {"dm", 1e-1},  {"m", 1},
-                                                             {"km", 1e3},  {"in", 0.0254}, {"ft", 0.3048}};
-    const auto known =
-        std::find_if(std::begin(units), std::end(units), [&](const auto& one) { return one.first == unit; });
-    return known == std::end(units) ? 1 : known->second;
-}
 
 double half_diagonal(const Box3d& box) {
     Point3d half;
@@ -129,7 +122,7 @@ Point3d BcfTopics::middle_of(const Object& a, const Object& b) const {
 
 /// Returns what the row says besides its objects, for example "penetrating, at least 0.02 m deep, at (1, 2, 3)".
 std::string BcfTopics::text_of(const Row& row) const {
-    const double metres = metres_of(scene_.space.unit);
+    const double metres = metres_of(scene_.space.unit).value_or(1);
     const std::string_view unit = scene_.space.unit.empty() ? "" : " m";
     std::string text(word_of(row.collision_class));
     if (row.collision_class == CollisionClass::clearance) {
@@ -148,7 +141,7 @@ BcfComponent BcfTopics::component_of(const Object& object) const {
     return {{}, object_key(object.number, names_of(object))};
 }
 
-BcfCamera BcfTopics::camera_at(const Point3d& place, double radius) const {
+BcfCamera BcfTopics::camera_of(const Row& row) const {
     const bool y_up = scene_.space.up == UpAxis::y;
     const Point3d axis_up = y_up ? Point3d{0, 1, 0} : Point3d{0, 0, 1};
     const Point3d slope = y_up ? Point3d{0.5, -0.5, -0.75} : Point3d{0.5, 0.75, -0.5};
@@ -158,9 +151,9 @@ BcfCamera BcfTopics::camera_at(const Point3d& place, double radius) const {
     const Point3d up = vector::cross(across, camera.direction);
     camera.up = vector::times(up, 1 / vector::length(up));
     constexpr double half_view = field_of_view / 2 * 3.14159265358979323846 / 180, border = 1.2;
-    const double metres = metres_of(scene_.space.unit);
-    const double away = border * radius / std::sin(half_view);
-    camera.place = vector::times(vector::minus(place, vector::times(camera.direction, away)), metres);
+    const double metres = metres_of(scene_.space.unit).value_or(1);
+    const double away = border * radius_of(box_of(row.a), box_of(row.b)) / std::sin(half_view);
+    camera.place = vector::times(vector::minus(row.place, vector::times(camera.direction, away)), metres);
     return camera;
 }
 
@@ -224,7 +217,7 @@ BcfTopic BcfTopics::topic_of(const Row& row) const {
         topic.components.push_back(component_of(object));
     }
     add_comment(row, topic);
-    topic.camera = camera_at(row.place, radius_of(box_of(row.a), box_of(row.b)));
+    topic.camera = camera_of(row);
     return topic;
 }
 
@@ -252,7 +245,7 @@ BcfTopic BcfTopics::topic_of(const Group& group) const {
         };
         if (worst == nullptr || severity(*worst) < severity(row)) worst = &row;
     }
-    topic.camera = camera_at(worst->place, half_diagonal(box_of(group.element)));
+    topic.camera = camera_of(*worst);
     return topic;
 }
 

@@ -95,7 +95,7 @@ private:
     std::string text_of(const Row& row) const;
     Point3d middle_of(const Object& a, const Object& b) const;
     BcfComponent component_of(const Object& object) const;
-    BcfCamera camera_at(const Point3d& place, double radius) const;
+    BcfCamera camera_of(const Row& row) const;
     void add_file(const Object& object, BcfTopic& topic) const;
     void add_comment(const Row& row, BcfTopic& topic) const;
     std::vector<Group> groups(std::vector<bool>& grouped) const;
