@@ -2,6 +2,9 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <tuple>
 
 #include "cli/ifc_model.hpp"
 #include "cli/program.hpp"
@@ -385,6 +388,20 @@ TEST_F(Bcf, AnElementThatMeetsManyIsOneTopic) {
     EXPECT_EQ(floor["comments"].size(), 3u);
     EXPECT_LT(floor["place"][2], 3) << "the camera shows the deepest contact, not the whole floor";
     EXPECT_TRUE(has_text(floor["description"], "\nD8 (IfcColumn): penetrating, "));
+}
+
+/// Characters that XML 1.0 does not have become U+FFFD.
+TEST_F(Bcf, AllTextsAreValidXml) {
+    const json names = {"a\x01\xEF\xBF\xBE", "b\xEF\xBF\xBF\xEF\xBF\xBF", "c\xEF\xBF\xBC"};
+    json objects = json::array();
+    for (const json& name : names) objects.push_back({{"name", name}, {"shape", {{"type", "sphere"}, {"radius", 1}}}});
+    write_file(file("balls.json"), json{{"objects", objects}}.dump());
+    ASSERT_EQ(run("detect balls.json --output r.bcf --quiet").status, 0);
+    const std::string replacement = "\xEF\xBF\xBD", a = "1:a" + replacement + replacement,
+                      b = "1:b" + replacement + replacement, c = "1:c\xEF\xBF\xBC";
+    std::set<std::string> keys;
+    for (const json& topic : topics("r.bcf")) keys.insert(topic["selection"].dump());
+    EXPECT_EQ(keys, (std::set<std::string>{json{a, b}.dump(), json{a, c}.dump(), json{b, c}.dump()}));
 }
 
 TEST_F(Bcf, ObjectsWithoutIfcIdsHaveTheirKeys) {

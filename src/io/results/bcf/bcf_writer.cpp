@@ -16,6 +16,7 @@ namespace {
 constexpr std::string_view head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 constexpr std::string_view date = "1980-01-01T00:00:00Z";  // BCF needs a date; a clock would change the bytes
 constexpr std::string_view author = "octopair";
+constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD in UTF-8
 
 /// Returns a text as content of an element or an attribute. Characters that XML does not have become U+FFFD.
 std::string xml_text(std::string_view text) {
@@ -35,8 +36,12 @@ std::string xml_text(std::string_view text) {
                 xml += "&quot;";
                 break;
             default:
-                xml += c >= 0 && c < ' ' && c != '\n' && c != '\t' ? std::string("\xEF\xBF\xBD") : std::string(1, c);
+                xml += c >= 0 && c < ' ' && c != '\n' && c != '\t' ? replacement : std::string_view(&c, 1);
         }
+    }
+    for (const std::string_view character : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"}) {  // U+FFFE and U+FFFF
+        for (std::size_t at = 0; (at = xml.find(character, at)) != std::string::npos;)
+            xml.replace(at, character.size(), replacement);
     }
     return xml;
 }
