@@ -249,6 +249,44 @@ TEST_F(Statuses, WhatOptionsLeaveOutStays) {
     EXPECT_EQ(statuses(), after) << "what is not found at all is resolved";
 }
 
+/// Decisions about undecided pairs stay if the pairs are no rows, because --classes does not name their class.
+TEST_F(Statuses, UndecidedPairsThatAreNoRowsStay) {
+    // A box in another one that lacks a triangle. `at`: the place of the first corner of the inner box.
+    const auto write_boxes = [&](int at) {
+        std::string text;
+        for (const auto& [name, low, high, triangles] :
+             {std::tuple("outer", 0, 9, 11), std::tuple("inner", at, at + 1, 12)}) {
+            text += std::string("o ") + name + '\n';
+            for (int i = 0; i < 8; ++i) {
+                text += 'v';
+                for (int axis = 0; axis < 3; ++axis) text += ' ' + std::to_string((i >> axis & 1) != 0 ? high : low);
+                text += '\n';
+            }
+            const int faces[12][3] = {{8, 6, 5}, {8, 5, 7}, {4, 3, 1}, {4, 1, 2}, {8, 4, 2}, {8, 2, 6},
+                                      {7, 5, 1}, {7, 1, 3}, {8, 7, 3}, {8, 3, 4}, {6, 2, 1}, {6, 1, 5}};
+            for (const auto& [a, b, c] : std::span(faces).first(std::size_t(triangles)))
+                text += "f " + std::to_string(a - 9) + ' ' + std::to_string(b - 9) + ' ' + std::to_string(c - 9) + '\n';
+        }
+        write_file(file("open.obj"), text);
+    };
+    const auto status = [&](const std::string& more) {
+        const Outcome outcome = run("detect open.obj --statuses s.json --output r.jsonl " + more);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return json::parse(content("s.json"))["collisions"].at(0)["status"].get<std::string>();
+    };
+    write_boxes(2);
+    EXPECT_EQ(status("--classes undecided"), "new");
+    decide(json::parse(content("s.json"))["collisions"][0]["key"], "approved");
+    for (const std::string more : {"", "--stage features", "--stage features --min-depth 1", "--verify",
+                                   "--classes contained", "--classes clearance --verify"}) {
+        EXPECT_EQ(status(more), "approved") << more;
+        EXPECT_EQ(content("r.jsonl"), "") << more;
+    }
+    EXPECT_TRUE(has_text(run("detect open.obj --statuses s.json").err, "undecided   1 pair left out"));
+    write_boxes(20);
+    EXPECT_EQ(status(""), "resolved");
+}
+
 TEST_F(Statuses, BelongToTheOptionsThatSayWhatACollisionIs) {
     write(building());
     ASSERT_EQ(detect("--margin 0.5").status, 0);

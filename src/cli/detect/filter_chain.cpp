@@ -162,6 +162,12 @@ io::ExclusionRules read_exclusions(const DetectRequest& request) {
     return io::read_exclusion_rules(file);
 }
 
+/// Returns the classes of the rows: those of --classes; without the option, all except `undecided`.
+ClassSet classes_of_rows(const DetectRequest& request) {
+    const ClassSet all_but_undecided = ~ClassSet().set(std::size_t(CollisionClass::undecided));
+    return request.pipeline.classes.value_or(all_but_undecided);
+}
+
 class RequestedFilters final : public FilterChain {
 public:
     RequestedFilters(const DetectRequest& request, const SetPair& sets, const std::stop_token& stop)
@@ -176,7 +182,7 @@ public:
             return;
         }
         const io::ExclusionRules rules = read_exclusions(request);
-        Exclusions([this](std::unique_ptr<Filter> filter) { add_choosing(std::move(filter)); }, request, sets)
+        Exclusions([this](std::unique_ptr<Filter> filter) { add_option_filter(std::move(filter)); }, request, sets)
             .add(rules);
         if (request.verify) {
             const auto add = [this](std::unique_ptr<Filter> filter) { exclusions_.add(std::move(filter)); };
@@ -227,7 +233,7 @@ public:
     }
 
     std::span<const Pair> left_out() const override { return left_out_.pairs; }
-    const LeftOut& of_other_classes() const override { return of_other_classes_; }
+    const LeftOut& left_out_by_class() const override { return left_out_by_class_; }
 
 private:
     Input input_of(std::uint64_t frame) const {
@@ -239,8 +245,8 @@ private:
         ExactOptions options{.margin = request.margin, .tolerance = tolerance_of(request, sets_)};
         options.duplicate_tolerance = request.pipeline.duplicate_tolerance;
         options.max_contacts = request.pipeline.max_contacts.value_or(options.max_contacts);
-        const auto& classes = request.pipeline.classes;
-        options.keep_undecided = classes && classes->test(std::size_t(CollisionClass::undecided));
+        const ClassSet classes = classes_of_rows(request);
+        options.keep_undecided = classes.test(std::size_t(CollisionClass::undecided)) || keeps_left_out_;
         const ShapedObjects first = shaped(sets_.first);
         const auto second = sets_.second != nullptr ? std::optional(shaped(*sets_.second)) : std::nullopt;
         const ShapedObjects* const other = second ? &*second : nullptr;
@@ -257,25 +263,26 @@ private:
     /// Adds a filter that applies --min-depth to the findings that the default tolerance gives, unless `options` have this tolerance.
     void add_early_depth(const DetectRequest& request, const ShapedObjects& first, const ExactOptions& options,
                          const ShapedObjects* other) {
-        ExactOptions standard{.margin = options.margin, .tolerance = default_tolerance_of(request, sets_)};
-        standard.max_contacts = 0;
+        ExactOptions by_default{.margin = options.margin, .tolerance = default_tolerance_of(request, sets_)};
+        by_default.max_contacts = 0;
         const double duplicate_tolerance = options.duplicate_tolerance.value_or(options.tolerance);
-        if (options.tolerance == standard.tolerance && duplicate_tolerance == standard.tolerance) return;
-        add_choosing(
-            make_early_depth_filter(make_exact_feature_filter(first, standard, other), *request.pipeline.min_depth));
+        if (options.tolerance == by_default.tolerance && duplicate_tolerance == by_default.tolerance) return;
+        add_option_filter(
+            make_early_depth_filter(make_exact_feature_filter(first, by_default, other), *request.pipeline.min_depth));
     }
 
     void add_row_filters(const DetectRequest& request) {
         const PipelineRequest& asked = request.pipeline;
-        if (asked.min_depth) add_choosing(make_depth_filter(*asked.min_depth));
-        if (!asked.classes) return;
-        std::unique_ptr<Filter> classes = make_class_filter(*asked.classes);
-        if (request.verify) classes = make_recorded_filter(std::move(classes), of_other_classes_);
-        add_choosing(std::move(classes));
+        if (asked.min_depth) add_option_filter(make_depth_filter(*asked.min_depth));
+        // With --statuses, the exact filters keep undecided pairs, so that this filter records those that are left out.
+        if (!asked.classes && !keeps_left_out_) return;
+        std::unique_ptr<Filter> classes = make_class_filter(classes_of_rows(request));
+        if (request.verify) classes = make_recorded_filter(std::move(classes), left_out_by_class_);
+        add_option_filter(std::move(classes));
     }
 
-    /// Adds a filter that leaves out collisions by options.
-    void add_choosing(std::unique_ptr<Filter> filter) {
+    /// Adds a filter that leaves out pairs because of an option. With --statuses, the pairs that it drops are recorded.
+    void add_option_filter(std::unique_ptr<Filter> filter) {
         pipeline_.add(keeps_left_out_ ? make_recorded_filter(std::move(filter), left_out_) : std::move(filter));
     }
 
@@ -303,8 +310,8 @@ private:
     Pipeline exclusions_;  // the exclusion rules alone, with --verify
     bool has_exclusions_ = false;
     std::vector<std::string> warnings_;
-    LeftOut left_out_;                                  // by all filters that choose rows, with --statuses
-    LeftOut of_other_classes_{.keeps_findings = true};  // by --classes, with --verify
+    LeftOut left_out_;                                   // by all filters that choose rows, with --statuses
+    LeftOut left_out_by_class_{.keeps_findings = true};  // by --classes, with --verify
 };
 
 }  // namespace

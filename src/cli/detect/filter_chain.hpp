@@ -31,7 +31,7 @@ public:
     /// Returns the pairs that options such as --exclude, --min-depth and --classes have left out. Requires: the request has --statuses.
     virtual std::span<const Pair> left_out() const = 0;
     /// Returns the collisions that --classes has left out. Requires: the request has --verify.
-    virtual const LeftOut& of_other_classes() const = 0;
+    virtual const LeftOut& left_out_by_class() const = 0;
 };
 
 /// Makes the filters of the request. Borrows the shapes and names of the sets.

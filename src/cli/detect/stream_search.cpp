@@ -143,7 +143,7 @@ private:
         if (!check) return;
         const Timed timed(run_.report.seconds.verify);
         run_.progress.show("verifying", 0);
-        check->take(filters_->of_other_classes());
+        check->take(filters_->left_out_by_class());
         const std::vector<Pair> excluded = filters_->excluded(*engine_, frame);
         const StageCheck::Result result = check->finish(excluded);
         run_.report.collisions_verified = result.judged;

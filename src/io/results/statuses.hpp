@@ -5,7 +5,8 @@
 // - A known collision that is no longer found is resolved, and stays in the file. If it is found again, it is new.
 // - A collision of class "clearance" that meets now is new.
 // - The file has one line for each collision, in the order of the keys. Keys of an entry that octopair does not know stay.
-// - A known collision that options leave out of the result keeps its status: nobody knows whether it would be found, or it was found.
+// - A known collision that options leave out of the result keeps its status. It need not be gone: octopair did not test it, or found it and
+//   made no row of it.
 // - The file has the options that say what a collision is, such as the margin. A run with other options is refused, because it would resolve
 //   collisions that still exist.
 #pragma once
