@@ -113,6 +113,36 @@ TEST_F(RowChoice, ToleranceAndMinDepthComposeOnAllScenes) {
     }
 }
 
+/// The same for a default tolerance that is larger: what --min-depth leaves out because of its thickness stays out.
+TEST_F(RowChoice, SmallerTolerancesGiveNoMoreRowsThanTheDefault) {
+    // A bolt with 0.005 too much in its hole, as a prism of 4 sides. It can only leave along its axis, which is a long way.
+    std::string text = "o bolt\n";
+    const auto square = [&](double radius, double z) {
+        for (const auto& [x, y] : {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}}) {
+            text +=
+                "v " + std::to_string(radius * x) + ' ' + std::to_string(radius * y) + ' ' + std::to_string(z) + '\n';
+        }
+    };
+    const auto sides = [&](int low, int high) {
+        for (int i = 0; i < 4; ++i) {
+            const int next = (i + 1) % 4;
+            text += "f " + std::to_string(low + i) + ' ' + std::to_string(low + next) + ' ' +
+                    std::to_string(high + next) + ' ' + std::to_string(high + i) + '\n';
+        }
+    };
+    square(1, -3), square(1, 3);
+    sides(1, 5);
+    text += "f 4 3 2 1\nf 5 6 7 8\no plate\n";
+    square(4, 0), square(4, 1), square(0.995, 0), square(0.995, 1);
+    sides(9, 13), sides(21, 17), sides(17, 9), sides(13, 21);
+    write_file(file("bolt.obj"), text);
+    const std::string detect = "bolt.obj --stage features --chord 0.005";
+    EXPECT_EQ(rows(detect).size(), 1u);
+    EXPECT_EQ(rows(detect + " --min-depth 0.02"), Rows());
+    for (const std::string tolerance : {"0", "1e-3", "0.01", "0.1"})
+        EXPECT_EQ(rows(detect + " --min-depth 0.02 --tolerance " + tolerance), Rows()) << tolerance;
+}
+
 TEST_F(RowChoice, ClassesAreThoseOfTheList) {
     write_plates("plates.obj");
     const std::string features = "plates.obj --stage features --margin 0.1 --tolerance 1e-3";

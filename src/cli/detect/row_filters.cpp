@@ -12,22 +12,25 @@ namespace {
 class EarlyDepthFilter final : public Filter {
 public:
     EarlyDepthFilter(std::unique_ptr<Filter> features, double min_depth)
-        : features_(std::move(features)), min_depth_(min_depth) {}
+        : features_(std::move(features)), depth_(make_depth_filter(min_depth)) {}
 
     std::string_view name() const override { return "depth"; }
 
     void apply(Batch& batch) const override {
         Batch judged = batch;
         features_->apply(judged);
+        depth_->apply(judged);
+        // Filters keep the order of the pairs.
+        auto kept = judged.pairs().begin();
         batch.keep_if([&](std::size_t i) {
-            const Finding& finding = judged.finding(i);
-            return finding.depth_kind == DepthKind::unknown || finding.depth_at_most >= min_depth_;
+            const bool is_kept = kept != judged.pairs().end() && *kept == batch.pairs()[i];
+            if (is_kept) ++kept;
+            return is_kept;
         });
     }
 
 private:
-    std::unique_ptr<Filter> features_;
-    double min_depth_;
+    std::unique_ptr<Filter> features_, depth_;
 };
 
 class ClassFilter final : public Filter {
