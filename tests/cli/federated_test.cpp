@@ -247,6 +247,22 @@ TEST_F(RelationRules, ARelationThatNoInputHasIsAWarning) {
     EXPECT_TRUE(has_text(run("detect c.obj --exclude fills -o p.csv").err, "the rule 'fills' leaves out nothing\n"));
 }
 
+TEST_F(RelationRules, UnknownRelationsAreNamed) {
+    save("a.ifc", walls_and_doors());
+    const std::string relations = "; relations: fills, assembly, system";
+    for (const auto& [value, word] :
+         {std::pair("fills,foo", "foo"), {"foo,fills", "foo"}, {"fills,", ""}, {"fillz", "fillz"}}) {
+        const Outcome outcome = run(std::string("detect a.ifc --exclude ") + value + " -o p.csv");
+        EXPECT_EQ(outcome.status, 2) << value;
+        EXPECT_TRUE(has_text(outcome.err, std::string("--exclude: '") + word +
+                                              "' is no relation, and there is no file '" + value + '\'' + relations))
+            << outcome.err;
+    }
+    EXPECT_TRUE(has_text(run("detect a.ifc --exclude none.json").err, "none.json: cannot open"));
+    write_file(file("fills,foo"), R"({"exclude": [{"relation": "fills"}]})");
+    EXPECT_EQ(pairs("a.ifc --exclude fills,foo"), pairs("a.ifc --exclude fills")) << "a file of this name";
+}
+
 /// A box in whole millimetres, from one corner to the other.
 using MillimetreBox = std::array<int, 6>;
 
@@ -294,6 +310,7 @@ protected:
         write_file(file("m.3mf"), three_mf_of("meter", row_of_boxes(1013)));
         write_file(file("mm.3mf"), three_mf_of("millimeter", row_of_boxes(1013)));
     }
+    /// Returns the rows of a result, without the names of the input files.
     std::string rows(const std::string& arguments) const {
         const Outcome outcome = run("detect " + arguments + " -o r.jsonl");
         EXPECT_EQ(outcome.status, 0) << outcome.err;

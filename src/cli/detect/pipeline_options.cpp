@@ -9,6 +9,7 @@
 #include "cli/detect/detection.hpp"
 #include "cli/input/input_set.hpp"
 #include "io/formats/format_choice.hpp"
+#include "io/json/exclusion_rules.hpp"
 #include "io/results/collision_row.hpp"
 #include "octopair/error.hpp"
 
@@ -341,6 +342,7 @@ void check_search_options(const DetectRequest& request) {
         refuse(fmt::format("--objects triangle: {} has only boxes, no triangles", *boxes));
     check_exact_options(request);
     check_classes(request);
+    io::check_relations("--exclude", request.pipeline.exclude);
     if (!has_filters(request)) return;
     const std::string asked = filter_option(request);
     if (!with_pipeline) refuse(asked + ": this octopair was built without the pipeline");

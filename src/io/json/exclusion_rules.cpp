@@ -1,6 +1,7 @@
 #include "io/json/exclusion_rules.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "io/files/input_file.hpp"
 #include "io/formats/format_choice.hpp"
 #include "io/json/json_fields.hpp"
+#include "octopair/error.hpp"
 
 namespace octopair::io {
 
@@ -113,6 +115,21 @@ std::optional<ExclusionRules> relation_rules(std::string_view words) {
         rules.relations.push_back({*relation, "--exclude"});
         if (end == rest.size()) return rules;
         rest.remove_prefix(end + 1);
+    }
+}
+
+void check_relations(std::string_view option, const std::string& value) {
+    std::error_code error;
+    const bool is_list = value.find(',') != std::string::npos || value.find_first_of("./") == std::string::npos;
+    if (value.empty() || !is_list || std::filesystem::exists(value, error)) return;
+    for (std::size_t begin = 0; begin <= value.size();) {
+        const std::size_t end = std::min(value.find(',', begin), value.size());
+        const std::string word = value.substr(begin, end - begin);
+        begin = end + 1;
+        if (relation_of(word)) continue;
+        throw Error(ErrorCode::usage,
+                    fmt::format("{}: '{}' is no relation, and there is no file '{}'; relations: {}", option,
+                                shown_text(word), shown_text(value), fmt::join(relation_words(), ", ")));
     }
 }
 

@@ -39,6 +39,10 @@ struct ExclusionRules {
 /// Returns the rules of a list of relations, such as "fills,assembly"; nothing if a word is no relation.
 std::optional<ExclusionRules> relation_rules(std::string_view words);
 
+/// Checks the value of an option that takes a list of relations or the path of a file. The value is a list if no such file exists, and it has a
+/// comma, or neither a dot nor a slash. Throws: Error{usage} if the value is a list, and one of its words is no relation.
+void check_relations(std::string_view option, const std::string& value);
+
 /// Reads the rules of a file.
 /// Throws: Error{bad_input, io_failed} that begins with the file and names the place in it, for example "exclude[2]: b".
 ExclusionRules read_exclusion_rules(const std::string& path);
