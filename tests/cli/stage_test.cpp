@@ -296,6 +296,9 @@ TEST_F(Stages, CoarseCoordinatesAreAWarning) {
     save("far.ply", "float", 5410000.5f);
     save("exact.ply", "double", 5410000.5);
     save("near.ply", "float", 1.0f);
+    EXPECT_TRUE(has_text(run("detect near.ply --stage features --chord 1e-9").err,
+                         "(twice the chord error 1e-09, and the precision of float32)\n"));
+    EXPECT_TRUE(has_text(run("detect near.ply --stage features").err, " (the precision of float32)\n"));
     const nlohmann::json far = stats("far.ply --stage pairs");
     ASSERT_EQ(far["warnings"].size(), 1u);
     EXPECT_EQ(

@@ -192,8 +192,12 @@ std::string pairs_text(std::uint64_t pairs) { return fmt::format("{} pair{}", gr
 /// Returns where the tolerance comes from, in parentheses; empty for --tolerance.
 std::string tolerance_source(const DetectReport& report) {
     if (!report.tolerance_is_default) return {};
-    if (!report.chord) return " (the precision of float32)";
-    return fmt::format(" (twice the chord error {:.3g})", *report.chord);
+    constexpr std::string_view precision = "the precision of float32";
+    const double of_chord = 2 * report.chord.value_or(0);
+    if (of_chord == 0) return fmt::format(" ({})", precision);
+    const bool both = *report.tolerance > of_chord;
+    return fmt::format(" (twice the chord error {:.3g}{}{})", *report.chord, both ? ", and " : "",
+                       both ? precision : "");
 }
 
 /// Returns the lines about the exact stages: classes, tolerance, and objects without an inside.
