@@ -108,6 +108,25 @@ TEST_F(Report, ComparesWithAnOlderResult) {
 }
 
 /// The objects of the second set follow those of the first, and the page says from which file each is.
+TEST_F(Report, HasTheStatusesOfTheRows) {
+    write_scene("s.json", {ball("a", 0), ball("b", 1), ball("c", 2.5)});
+    const auto row = [&] {
+        const auto data = report("s.json --stage features --statuses t.json");
+        const json table = json::parse(data.at("collisions/0.json"));
+        EXPECT_EQ(row_of(table["rows"], 1, 2)["status"], "new");
+        return row_of(table["rows"], 0, 1);
+    };
+    EXPECT_EQ(row()["status"], "new");
+    EXPECT_FALSE(row().contains("comment"));
+    json decided = json::parse(content("t.json"));
+    ASSERT_EQ(decided["collisions"][0]["a"], "a");
+    decided["collisions"][0]["status"] = "approved";
+    decided["collisions"][0]["comment"] = hostile;
+    write_file(file("t.json"), decided.dump());
+    EXPECT_EQ(row()["status"], "approved");
+    EXPECT_EQ(row()["comment"], hostile);
+}
+
 TEST_F(Report, OfAJoinHasBothSets) {
     write_scene("s.json", {ball("a", 0), ball("b", 9)});
     write_scene("t.json", {ball("c", 90), ball("d", 1)});
@@ -138,6 +157,9 @@ TEST_F(Report, KeepsTheWorstRows) {
     EXPECT_EQ(table["rows"][2]["class"], "duplicate");
     EXPECT_EQ(frame["classes"], (json{{"duplicate", 204'480}, {"penetrating", 2}}));
     EXPECT_EQ(json::parse(data.at("view.json"))["notices"][0], "The table has the worst 200000 of 204482 rows.");
+    write_file(file("none.jsonl"), "");
+    const auto compared = report("s.json --stage features --baseline none.jsonl");
+    EXPECT_EQ(json::parse(compared.at("frame/0.json"))["new"], 204'482) << "all rows, not only those of the table";
 }
 
 #endif

@@ -3,8 +3,8 @@ import {significant} from './dom.ts';
 import type {Collision} from './types.ts';
 
 // In the order of the numbers of the classes (protocol.md).
-export const classWords: readonly string[] = ['unknown', 'clearance', 'collision', 'touching', 'penetrating', 'contained', 'duplicate'];
-const severities: readonly number[] = [2, 0, 3, 1, 6, 5, 4];
+export const classWords: readonly string[] = ['unknown', 'clearance', 'collision', 'touching', 'penetrating', 'contained', 'duplicate', 'undecided'];
+const severities: readonly number[] = [3, 1, 4, 2, 7, 6, 5, 0];
 
 const meanings: Record<string, string> = {
   clearance: 'The objects are apart, but nearer than the margin.',
@@ -13,6 +13,7 @@ const meanings: Record<string, string> = {
   penetrating: 'The insides of the objects share space.',
   contained: 'One object lies wholly inside the other.',
   duplicate: 'The objects have the same geometry at the same place.',
+  undecided: 'One object lies within the bounds of the other, which has no inside. Their surfaces do not meet.',
 };
 
 const openMeanings: Record<string, string> = {a: 'The first object is not closed', b: 'The second object is not closed', ab: 'Neither object is closed'};
@@ -22,7 +23,7 @@ function severity(row: Collision): number {
 }
 
 export function severityOf(word: string): number {
-  return severities[classWords.indexOf(word)] ?? 2;
+  return severities[classWords.indexOf(word)] ?? 3;
 }
 
 // The number by which collisions of the same class are sorted.
@@ -38,7 +39,7 @@ export function compareWorst(p: Collision, q: Collision): number {
 // The colour of a class in lists: those that overlap stand out.
 export function toneOf(word: string): 'bad' | 'calm' | 'plain' {
   const value = severityOf(word);
-  return value >= 4 ? 'bad' : value === 1 ? 'calm' : 'plain';
+  return value >= 5 ? 'bad' : value === 2 ? 'calm' : 'plain';
 }
 
 // What a class means, and what the search could not know.

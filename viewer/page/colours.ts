@@ -146,7 +146,7 @@ function collidingText(model: SceneModel, states: Uint8Array): string {
   if (!classes) return 'colliding';
   const found = new Set<number>();
   for (let row = 0; row < model.rows; ++row) if (states[row] === State.colliding) found.add(classes[row]!);
-  const words = [4, 5, 6].filter(code => found.has(code)).map(code => classWords[code]);
+  const words = [4, 5, 6, 7].filter(code => found.has(code)).map(code => classWords[code]);
   return found.size === words.length && words.length ? words.join(', ') : 'colliding';
 }
 

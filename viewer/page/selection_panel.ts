@@ -108,6 +108,8 @@ export class SelectionPanel {
     if (place) entries.push(['where', [this.common(row, 'level').join(' and '), `${pointText(row)(place)}${unit ? ` ${unit}` : ''}`].filter(text => text).join(', at ')]);
     if (row.time !== undefined) entries.push(['time', plain(row.time)]);
     if (row.change && (this.model.frame.info.frame > 0 || row.change !== 'began')) entries.push(['change', row.change]);
+    if (row.status) entries.push(['status', row.status]);
+    if (row.comment) entries.push(['comment', row.comment]);
     return entries;
   }
 

@@ -8,6 +8,7 @@ export const State = {
 // The states of the classes of collisions, in the order of their numbers (protocol.md).
 const stateOfClass: readonly number[] = [
   State.colliding, State.clearance, State.colliding, State.touching, State.colliding, State.colliding, State.colliding,
+  State.colliding,
 ];
 
 // What is selected: one object and its partners, or the two objects of a pair.

@@ -69,6 +69,7 @@ export class Table {
       {title: unit => `thickness${unit}`, style: 'number thickness', text: thicknessOf},
       {title: () => 'time', style: 'number', text: row => row.time === undefined ? '' : String(Number(row.time.toPrecision(4)))},
       {title: () => 'change', style: 'change', text: row => this.changeText(row)},
+      {title: () => 'status', style: 'status', text: row => row.status ?? ''},
     ];
   }
 

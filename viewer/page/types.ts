@@ -99,6 +99,9 @@ export interface Collision extends GoneTexts {
   // Of the boxes, if no exact test computed a depth. Negative for a gap.
   overlap?: number;
   change?: string;
+  // What people decided about the collision.
+  status?: string;
+  comment?: string;
   // The deepest first.
   contacts?: Contact[];
   // The number of contacts, if the row has only some.

@@ -43,6 +43,7 @@ struct ReportRow {
     Pair pair;
     Finding finding;
     std::string_view change;
+    io::RowStatus status;
 };
 
 bool is_worse(const ReportRow& p, const ReportRow& q) {
@@ -106,7 +107,9 @@ public:
             const Finding finding = rows.findings.empty() ? Finding() : rows.findings[i];
             const std::string_view change = rows.changes.empty() ? std::string_view() : io::word_of(rows.changes[i]);
             ++class_counts_[std::size_t(finding.collision_class)];
-            rows_.push_back({total_++, rows.pairs[i], finding, change});
+            if (!rows.changes.empty()) ++change_counts_[std::size_t(rows.changes[i])];
+            const io::RowStatus status = rows.statuses.empty() ? io::RowStatus() : rows.statuses[i];
+            rows_.push_back({total_++, rows.pairs[i], finding, change, status});
             if (rows_.size() == 2 * max_rows) keep_worst();
         }
     }
@@ -145,6 +148,8 @@ private:
             data.pairs.push_back({row.pair.a, row.pair.b + second_offset(sets_)});
             data.findings.push_back(std::move(row.finding));
             if (!row.change.empty()) data.changes.push_back(row.change);
+            if (!request_.pipeline.statuses.empty())
+                data.statuses.push_back({io::word_of(row.status.status), std::string(row.status.comment)});
         }
         data.pair_count = total_;
         data.class_counts.assign(class_counts_.begin(), class_counts_.end());
@@ -155,9 +160,7 @@ private:
     void add_changes(viewer::FrameData& data) const {
         if (request_.pipeline.baseline.empty()) return;
         for (const io::Change change : {io::Change::begun, io::Change::same}) {
-            const std::string_view word = io::word_of(change);
-            data.facts.push_back(
-                {std::string(word), double(std::count(data.changes.begin(), data.changes.end(), word))});
+            data.facts.push_back({std::string(io::word_of(change)), double(change_counts_[std::size_t(change)])});
         }
         data.facts.push_back({std::string(io::word_of(io::Change::gone)), double(gone_total_)});
     }
@@ -206,6 +209,7 @@ private:
     std::vector<ReportRow> rows_;
     std::uint64_t total_ = 0, gone_total_ = 0;
     std::array<std::uint64_t, collision_classes> class_counts_ = {};
+    std::array<std::uint64_t, 2> change_counts_ = {};  // of rows: new and the same
     std::vector<viewer::GoneCollision> gone_;
 };
 

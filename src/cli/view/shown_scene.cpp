@@ -166,6 +166,9 @@ void add_facts(SceneContents& contents, const DetectRequest& request, const SetP
     if (stage_of(request) == Stage::features) {
         contents.facts.push_back({"tolerance", 0, fmt::format("{:.3g}", tolerance_of(request, sets))});
     }
+    if (request.pipeline.chord) {
+        contents.facts.push_back({"chord error", 0, fmt::format("{}", *request.pipeline.chord)});
+    }
     if (request.pipeline.min_depth) {
         contents.facts.push_back({"least depth", 0, fmt::format("{}", *request.pipeline.min_depth)});
     }

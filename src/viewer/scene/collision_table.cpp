@@ -12,7 +12,8 @@ namespace octopair::viewer {
 namespace {
 
 constexpr std::string_view class_words[] = {"unknown",     "clearance", "collision", "touching",
-                                            "penetrating", "contained", "duplicate"};
+                                            "penetrating", "contained", "duplicate", "undecided"};
+static_assert(std::size(class_words) == collision_classes);
 
 /// Returns a contact as JSON. A contact with a known point but no known normal has the normal 0.
 Json contact_json(const Contact& contact) {
@@ -22,8 +23,9 @@ Json contact_json(const Contact& contact) {
 
 constexpr std::size_t max_row_contacts = 16;
 
-/// How bad the classes are, indexed by CollisionClass: objects that overlap are worse than objects that touch.
-constexpr std::array<std::uint8_t, collision_classes> severities = {2, 0, 3, 1, 6, 5, 4, 0};
+/// How bad the classes are, indexed by CollisionClass: objects that overlap are worse than objects that touch. Undecided pairs are the least
+/// bad ones: their surfaces do not meet.
+constexpr std::array<std::uint8_t, collision_classes> severities = {3, 1, 4, 2, 7, 6, 5, 0};
 
 bool has_depth(const Finding& finding) { return finding.depth_kind != DepthKind::unknown || finding.depth > 0; }
 
@@ -198,6 +200,11 @@ private:
         }
         if (has_begun(pair)) row["change"] = "began";
         if (!frame_.data.changes.empty()) row["change"] = frame_.data.changes[i];
+        if (!frame_.data.statuses.empty()) {
+            const auto& [status, comment] = frame_.data.statuses[i];
+            row["status"] = status;
+            if (!comment.empty()) row["comment"] = comment;
+        }
         if (!frame_.data.findings.empty()) {
             add_finding(row, frame_.data.findings[i]);
             add_contacts(row, frame_.data.findings[i], omitted.contacts ? 1 : max_row_contacts);

@@ -92,6 +92,12 @@ struct SceneContents {
     static constexpr std::uint32_t no_shape = 0xFFFFFFFF;
 };
 
+/// What people decided about a collision: a word, which is a static text, and a comment.
+struct RowStatus {
+    std::string_view status;
+    std::string comment;
+};
+
 /// A frame and its result.
 struct FrameData {
     Boxes boxes;                       ///< one per object
@@ -102,6 +108,7 @@ struct FrameData {
     std::vector<Finding> findings;     ///< one per pair, or empty
     std::vector<std::string_view>
         changes;  ///< one word per pair since an older result, such as "new", or empty; static texts
+    std::vector<RowStatus> statuses;  ///< one per pair, or empty
     std::uint64_t pair_count = 0;
     std::vector<std::uint64_t> class_counts;  ///< number of pairs of each class; empty: those of `findings`
     bool more_pairs = false;                  ///< true if there are more than `pair_count`
