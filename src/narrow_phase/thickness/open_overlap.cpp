@@ -14,7 +14,6 @@ namespace octopair {
 namespace {
 
 constexpr double facing = 1e-6;   // cosine: pieces that are closer to perpendicular face neither way
-constexpr int max_depth = 3;      // directions that are tried for parts of a region, one after the other
 constexpr int max_divisions = 6;  // of a region, into parts of parts
 constexpr int max_tests = 200;    // regions and directions that are tested for a box
 
@@ -78,33 +77,24 @@ public:
         : request_(request), rounding_(request.surface.rounding()), outward_(request.pieces.size()) {}
 
     bool run(const Polyhedron& region, const Point3d& direction) {
-        return opens_along_any(region, {direction, std::nullopt}, {}, max_divisions);
+        return opens_along_any(region, direction, max_divisions);
     }
 
 private:
-    using Directions = std::array<std::optional<Point3d>, 2>;
-    /// Regions that a region is a part of: the sum of the normals of the pieces that do not open them, and their number.
-    struct Before {
-        Point3d normals = {};
-        int depth = 0;
-    };
-
-    /// Tests lines along each direction through the region, and along the mean normal. If none opens all of the region, tests its parts: the
+    /// Tests lines along the direction through the region, and along the mean normal. If neither opens all of the region, tests its parts: the
     /// planes of pieces divide it.
-    bool opens_along_any(const Polyhedron& region, const Directions& directions, const Before& before, int divisions) {
-        if (is_outside(region)) return true;
-        for (const auto& way : {directions[0], directions[1], mean_normal(region)}) {
-            if (way && opens(region, *way, before)) return true;
-        }
+    bool opens_along_any(const Polyhedron& region, const Point3d& direction, int divisions) {
+        if (is_outside(region) || opens(region, direction)) return true;
+        if (const auto mean = mean_normal(region); mean && opens(region, *mean)) return true;
         if (divisions == 0 || tests_ > max_tests) return false;
-        const auto parts = divided(region, directions[0]);
-        return parts && opens_along_any((*parts)[0], directions, before, divisions - 1) &&
-               opens_along_any((*parts)[1], directions, before, divisions - 1);
+        const auto parts = divided(region, direction);
+        return parts && opens_along_any((*parts)[0], direction, divisions - 1) &&
+               opens_along_any((*parts)[1], direction, divisions - 1);
     }
 
     /// Returns whether the region has no part of the overlap: no piece, and no point in both solids.
     bool is_outside(const Polyhedron& region) const {
-        const std::vector<CutPlane> planes = region.planes();
+        const std::vector<CutPlane>& planes = region.planes();
         const bool has_piece = std::any_of(request_.pieces.begin(), request_.pieces.end(), [&](const Piece& piece) {
             return !part_within(piece.polygon, planes, rounding_).empty();
         });
@@ -113,12 +103,11 @@ private:
 
     /// Returns the parts of a region on the two sides of the plane of a piece: of all that cross it, the one that is nearest to parallel to
     /// `direction`. Returns nothing if none crosses it.
-    std::optional<std::array<Polyhedron, 2>> divided(const Polyhedron& region,
-                                                     const std::optional<Point3d>& direction) const {
+    std::optional<std::array<Polyhedron, 2>> divided(const Polyhedron& region, const Point3d& direction) const {
         std::optional<std::array<Polyhedron, 2>> parts;
         double least = 2;
         for (const Piece& piece : request_.pieces) {
-            const double cosine = direction ? std::abs(vector::dot(piece.normal, *direction)) : 1;
+            const double cosine = std::abs(vector::dot(piece.normal, direction));
             if (cosine >= least) continue;
             const CutPlane plane{piece.normal, vector::dot(piece.normal, piece.polygon.corners[0])};
             const auto [low, high] = region.along(plane.normal);
@@ -134,7 +123,7 @@ private:
     }
 
     /// Tests the lines along `direction` through the region.
-    bool opens(const Polyhedron& region, const Point3d& direction, const Before& before) {
+    bool opens(const Polyhedron& region, const Point3d& direction) {
         if (++tests_ > max_tests) return false;
         const std::vector<CutPlane> sides = prism_over(region.corners(), direction);
         Polyhedron column = request_.domain;
@@ -146,7 +135,7 @@ private:
         std::erase_if(parts, [&](const LinePart& part) {
             return part.extent.low > extent.high + rounding_ || part.extent.high < extent.low - rounding_;
         });
-        return opens_between(region, direction, parts, before);
+        return have_two_solids(parts, direction);
     }
 
     std::vector<LinePart> parts_within(const std::vector<CutPlane>& sides, const Point3d& direction) const {
@@ -205,9 +194,8 @@ private:
         return std::nullopt;
     }
 
-    /// Returns whether all lines that enter and leave the overlap through one solid open along other directions.
-    bool opens_between(const Polyhedron& region, const Point3d& direction, const std::vector<LinePart>& parts,
-                       const Before& before) {
+    /// Returns whether no lines enter and leave the overlap through one solid alone.
+    bool have_two_solids(const std::vector<LinePart>& parts, const Point3d& direction) {
         for (const LinePart& above : parts) {
             const auto leaving = way_of(*above.piece, direction);
             if (!leaving) return false;
@@ -216,7 +204,7 @@ private:
                 if (below.piece->side != above.piece->side) continue;
                 const auto entering = way_of(*below.piece, direction);
                 if (!entering) return false;
-                if (*entering < 0 && !opens_elsewhere(region, direction, {above, below, parts}, before)) return false;
+                if (*entering < 0 && has_one_solid(direction, {above, below, parts})) return false;
             }
         }
         return true;
@@ -244,28 +232,19 @@ private:
         });
     }
 
-    /// Tests the part of the region on lines that enter the overlap at one part and leave it at another part of the same solid.
-    bool opens_elsewhere(const Polyhedron& region, const Point3d& direction, const PartPair& pair,
-                         const Before& before) {
+    /// Returns whether some lines enter the overlap at one part and leave it at another part of the same solid, and through that solid alone.
+    bool has_one_solid(const Point3d& direction, const PartPair& pair) {
         const Polygon common =
             part_within(pair.above.polygon, prism_over(pair.below.polygon.corners, direction), rounding_);
-        if (common.empty()) return true;
-        const Point3d out_above = outward_normal(*pair.above.piece), out_below = outward_normal(*pair.below.piece);
-        const double height = vector::dot(out_below, vector::minus(middle_of(common), pair.below.polygon.corners[0]));
-        if (height >= -rounding_) return true;  // the line leaves the solid below the place where it enters
-        std::vector<CutPlane> planes = prism_over(common.corners, direction);
-        const Polygon entrance = part_within(pair.below.polygon, planes, rounding_);
-        if (is_shared(common, pair.above, pair.all, direction)) return true;
-        if (!entrance.empty() && is_shared(entrance, pair.below, pair.all, direction)) return true;
-        planes.push_back({out_above, vector::dot(out_above, pair.above.polygon.corners[0])});
-        planes.push_back({out_below, vector::dot(out_below, pair.below.polygon.corners[0])});
-        Polyhedron rest = region;
-        rest.cut_to(planes, rounding_);
-        if (rest.empty()) return true;
-        if (before.depth == max_depth) return false;
-        const Point3d here = vector::plus(out_above, out_below), all = vector::plus(before.normals, here);
-        return opens_along_any(rest, {direction_of(here), direction_of(all)}, {all, before.depth + 1},
-                               max_divisions / 2);
+        if (common.empty()) return false;
+        const Point3d up = vector::minus(middle_of(common), pair.below.polygon.corners[0]);
+        // The line leaves the solid below the place where it enters.
+        if (vector::dot(outward_normal(*pair.below.piece), up) >= -rounding_) return false;
+        const std::vector<CutPlane> sides = prism_over(common.corners, direction);
+        if (sides.size() < 3) return false;  // no area
+        const Polygon entrance = part_within(pair.below.polygon, sides, rounding_);
+        return !is_shared(common, pair.above, pair.all, direction) &&
+               (entrance.empty() || !is_shared(entrance, pair.below, pair.all, direction));
     }
 
     /// Returns the mean normal of the pieces around a region, those of b turned around: the way that a moves out of b, if all pieces agree.

@@ -2,8 +2,8 @@
 //
 // Opens     A point of the overlap opens if some line through it leaves the overlap on one side through the surface of a, and on the other side
 //           through the surface of b, and both places are at most the tolerance apart.
-// Regions   The test takes convex regions. All lines along one direction through a region are tested together. Where such lines leave the overlap
-//           through one solid alone, this part of the region is tested again along another direction.
+// Regions   The test takes convex regions. All lines along one direction through a region are tested together. If they do not open it, the planes
+//           of pieces divide the region.
 // Domain    It contains all points within the tolerance of the regions, so it has all ends of such lines.
 // Rounding  Regions that are nowhere wider than about `rounding` are left out.
 #pragma once

@@ -57,7 +57,7 @@ struct RegionSearch {
 
 }  // namespace
 
-Polyhedron::Polyhedron(const ConvexDomain& domain, double rounding) {
+Polyhedron::Polyhedron(const ConvexDomain& domain, double rounding) : planes_(planes_of(domain.box)) {
     const Box3d& box = domain.box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -87,6 +87,7 @@ void Polyhedron::cut(const CutPlane& plane, double rounding) {
         if (!below.empty()) kept.push_back(std::move(below));
     }
     faces_ = std::move(kept);
+    planes_.push_back(plane);
     if (cap.empty()) return;
     sort_around(cap, plane.normal);
     faces_.push_back(std::move(cap));
@@ -120,24 +121,6 @@ std::vector<Point3d> Polyhedron::corners() const {
     std::vector<Point3d> corners;
     for (const Polygon& face : faces_) corners.insert(corners.end(), face.corners.begin(), face.corners.end());
     return corners;
-}
-
-std::vector<CutPlane> Polyhedron::planes() const {
-    const Point3d inner = middle();
-    std::vector<CutPlane> planes;
-    for (const Polygon& face : faces_) {
-        Point3d normal = {};
-        for (std::size_t i = 2; i < face.corners.size(); ++i) {
-            normal = vector::plus(normal, vector::cross(vector::minus(face.corners[i - 1], face.corners[0]),
-                                                        vector::minus(face.corners[i], face.corners[0])));
-        }
-        const double length = vector::length(normal);
-        if (!(length > 0)) continue;
-        const double sense = vector::dot(normal, vector::minus(face.corners[0], inner)) < 0 ? -1 : 1;
-        normal = vector::times(normal, sense / length);
-        planes.push_back({normal, vector::dot(normal, face.corners[0])});
-    }
-    return planes;
 }
 
 std::optional<Point3d> Polyhedron::middle_of_section(const CutPlane& plane) const {

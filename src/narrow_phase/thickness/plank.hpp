@@ -61,13 +61,14 @@ public:
     Extent along(const Point3d& direction) const;
     /// Returns all corners, most of them several times.
     std::vector<Point3d> corners() const;
-    /// Returns the planes of the faces: the polyhedron is below all.
-    std::vector<CutPlane> planes() const;
+    /// The polyhedron is all that is below these planes.
+    const std::vector<CutPlane>& planes() const { return planes_; }
     /// Returns a point of the section with a plane; nothing if they do not meet.
     std::optional<Point3d> middle_of_section(const CutPlane& plane) const;
 
 private:
     std::vector<Polygon> faces_;
+    std::vector<CutPlane> planes_;
 };
 
 /// Calls `visit` for each part of the polyhedron outside of all planks, until it returns false. Leaves out parts that are nowhere wider than
