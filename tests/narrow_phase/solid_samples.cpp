@@ -7,7 +7,8 @@ namespace octopair::test {
 
 namespace {
 
-void add_quad(shape::Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+void add_quad(shape::Mesh& mesh, const std::array<std::uint32_t, 4>& corners) {
+    const auto& [a, b, c, d] = corners;
     mesh.triangles.push_back({a, b, c});
     mesh.triangles.push_back({a, c, d});
 }
@@ -52,7 +53,7 @@ shape::Mesh prism(const Outline& outline, double low, double high) {
     mesh.vertices.push_back({0, 0, high});
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t next = (i + 1) % count;
-        add_quad(mesh, i, next, count + next, count + i);
+        add_quad(mesh, {i, next, count + next, count + i});
         mesh.triangles.push_back({next, i, 2 * count});
         mesh.triangles.push_back({count + i, count + next, 2 * count + 1});
     }
@@ -69,10 +70,10 @@ shape::Mesh ring(const Outline& outer, const Outline& inner, double low, double 
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t next = (i + 1) % count;
-        add_quad(mesh, i, next, count + next, count + i);
-        add_quad(mesh, 2 * count + next, 2 * count + i, 3 * count + i, 3 * count + next);
-        add_quad(mesh, next, i, 2 * count + i, 2 * count + next);
-        add_quad(mesh, count + i, count + next, 3 * count + next, 3 * count + i);
+        add_quad(mesh, {i, next, count + next, count + i});
+        add_quad(mesh, {2 * count + next, 2 * count + i, 3 * count + i, 3 * count + next});
+        add_quad(mesh, {next, i, 2 * count + i, 2 * count + next});
+        add_quad(mesh, {count + i, count + next, 3 * count + next, 3 * count + i});
     }
     return mesh;
 }
@@ -113,13 +114,13 @@ shape::Mesh comb(const std::vector<double>& xs, const std::vector<double>& top, 
     const auto high = [&](std::uint32_t i) { return count + i; };
     const std::uint32_t behind = 2 * count;
     for (std::uint32_t i = 0; i + 1 < count; ++i) {
-        add_quad(mesh, low(i), low(i + 1), high(i + 1), high(i));
-        add_quad(mesh, behind + low(i + 1), behind + low(i), behind + high(i), behind + high(i + 1));
-        add_quad(mesh, high(i), high(i + 1), behind + high(i + 1), behind + high(i));
-        add_quad(mesh, low(i + 1), low(i), behind + low(i), behind + low(i + 1));
+        add_quad(mesh, {low(i), low(i + 1), high(i + 1), high(i)});
+        add_quad(mesh, {behind + low(i + 1), behind + low(i), behind + high(i), behind + high(i + 1)});
+        add_quad(mesh, {high(i), high(i + 1), behind + high(i + 1), behind + high(i)});
+        add_quad(mesh, {low(i + 1), low(i), behind + low(i), behind + low(i + 1)});
     }
-    add_quad(mesh, low(0), high(0), behind + high(0), behind + low(0));
-    add_quad(mesh, low(count - 1), behind + low(count - 1), behind + high(count - 1), high(count - 1));
+    add_quad(mesh, {low(0), high(0), behind + high(0), behind + low(0)});
+    add_quad(mesh, {low(count - 1), behind + low(count - 1), behind + high(count - 1), high(count - 1)});
     return mesh;
 }
 

@@ -25,6 +25,7 @@ std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point
         double x, y;
     };
     std::vector<Flat> flat;
+    flat.reserve(points.size());
     for (const Point3d& point : points) flat.push_back({vector::dot(*u, point), vector::dot(v, point)});
     std::sort(flat.begin(), flat.end(),
               [](const Flat& p, const Flat& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
@@ -131,7 +132,7 @@ private:
         if (column.empty()) return false;
         std::vector<LinePart> parts = parts_within(sides, direction);
         Extent extent = region.along(direction);
-        if (!widen(column, parts, direction, extent)) return false;
+        if (!widen({column, parts, direction}, extent)) return false;
         std::erase_if(parts, [&](const LinePart& part) {
             return part.extent.low > extent.high + rounding_ || part.extent.high < extent.low - rounding_;
         });
@@ -149,11 +150,17 @@ private:
         return parts;
     }
 
+    /// Lines along one direction: the part of the domain that they cover, and the parts of pieces on them.
+    struct Lines {
+        const Polyhedron& column;
+        const std::vector<LinePart>& parts;
+        const Point3d& direction;
+    };
+
     /// Widens the extent until the lines are outside of the overlap at both of its ends. Returns false if it becomes wider than the tolerance.
-    bool widen(const Polyhedron& column, const std::vector<LinePart>& parts, const Point3d& direction,
-               Extent& extent) const {
-        const auto high = end_of_overlap(column, parts, direction, extent.high, 1);
-        const auto low = end_of_overlap(column, parts, direction, extent.low, -1);
+    bool widen(const Lines& lines, Extent& extent) const {
+        const auto high = end_of_overlap(lines, extent.high, 1);
+        const auto low = end_of_overlap(lines, extent.low, -1);
         if (!high || !low) return false;
         extent = {*low, *high};
         return extent.high - extent.low <= request_.most;
@@ -161,8 +168,7 @@ private:
 
     /// Returns the first place from `from` on, upward (sense 1) or downward (-1), where no line is in the overlap; nothing if there is none in
     /// the domain.
-    std::optional<double> end_of_overlap(const Polyhedron& column, const std::vector<LinePart>& parts,
-                                         const Point3d& direction, double from, int sense) const {
+    std::optional<double> end_of_overlap(const Lines& lines, double from, int sense) const {
         // Distances from `from` grow in the sense of the search.
         const auto nearest = [&](const LinePart& part) {
             return sense > 0 ? part.extent.low - from : from - part.extent.high;
@@ -173,19 +179,19 @@ private:
         double at = 0;
         while (at <= request_.most) {
             double beyond = at;
-            for (const LinePart& part : parts) {
+            for (const LinePart& part : lines.parts) {
                 if (nearest(part) <= at + rounding_ && farthest(part) > at + rounding_)
                     beyond = std::max(beyond, farthest(part));
             }
             if (beyond == at) {
-                const auto middle = column.middle_of_section({direction, from + sense * at});
+                const auto middle = lines.column.middle_of_section({lines.direction, from + sense * at});
                 if (!middle) return std::nullopt;
                 if (!request_.surface.in_both(
-                        vector::plus(*middle, vector::times(direction, 16 * sense * rounding_)))) {
+                        vector::plus(*middle, vector::times(lines.direction, 16 * sense * rounding_)))) {
                     return from + sense * at;
                 }
                 beyond = std::numeric_limits<double>::infinity();
-                for (const LinePart& part : parts) {
+                for (const LinePart& part : lines.parts) {
                     if (nearest(part) > at + rounding_) beyond = std::min(beyond, nearest(part));
                 }
             }
