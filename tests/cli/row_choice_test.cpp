@@ -1,13 +1,12 @@
 // Tests which collisions become rows: --tolerance, --duplicate-tolerance, --min-depth and --classes, alone and together.
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <random>
 #include <set>
 #include <sstream>
 #include <tuple>
 
+#include "cli/bolt.hpp"
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -115,36 +114,9 @@ TEST_F(RowChoice, ToleranceAndMinDepthComposeOnAllScenes) {
     }
 }
 
-/// The same for a default tolerance that is larger: what --min-depth leaves out because of its thickness stays out.
+/// With a larger default tolerance, --min-depth leaves out thin overlaps. They stay out with smaller tolerances.
 TEST_F(RowChoice, SmallerTolerancesGiveNoMoreRowsThanTheDefault) {
-    // A bolt with 0.005 too much in its hole, as a prism of 24 sides. It can only leave along its axis, which is a long way.
-    constexpr int count = 24;
-    std::string text = "o bolt\n";
-    const auto circle = [&](double radius, double z) {
-        for (int i = 0; i < count; ++i) {
-            const double angle = 2 * std::numbers::pi * i / count;
-            text += "v " + std::to_string(radius * std::cos(angle)) + ' ' + std::to_string(radius * std::sin(angle)) +
-                    ' ' + std::to_string(z) + '\n';
-        }
-    };
-    const auto sides = [&](int low, int high) {
-        for (int i = 1; i <= count; ++i) {
-            const int next = i % count + 1;
-            text += "f " + std::to_string(low + i) + ' ' + std::to_string(low + next) + ' ' +
-                    std::to_string(high + next) + ' ' + std::to_string(high + i) + '\n';
-        }
-    };
-    circle(1, -3), circle(1, 3);
-    sides(0, count);
-    for (const bool top : {false, true}) {
-        text += "f";
-        for (int i = 1; i <= count; ++i) text += ' ' + std::to_string(top ? count + i : count + 1 - i);
-        text += '\n';
-    }
-    text += "o plate\n";
-    circle(4, 0), circle(4, 1), circle(0.995, 0), circle(0.995, 1);
-    sides(2 * count, 3 * count), sides(5 * count, 4 * count), sides(4 * count, 2 * count), sides(3 * count, 5 * count);
-    write_file(file("bolt.obj"), text);
+    write_file(file("bolt.obj"), bolt_in_plate(0.995));
     const std::string detect = "bolt.obj --stage features --chord 0.005";
     EXPECT_EQ(rows(detect).size(), 1u);
     EXPECT_EQ(rows(detect + " --min-depth 0.02"), Rows());

@@ -1,9 +1,9 @@
 // Tests `--stage` and related options: colliding objects, exclusion rules, and messages about filters.
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <sstream>
 
+#include "cli/bolt.hpp"
 #include "cli/program.hpp"
 #include "support/page_data.hpp"
 
@@ -248,34 +248,7 @@ TEST_F(Stages, UndecidedPairsAreCounted) {
 
 /// The chord error of tessellated curves gives the default tolerance: a bolt in its hole touches, and the summary says why.
 TEST_F(Stages, ChordErrorsGiveTheTolerance) {
-    // A bolt with 0.01 too much in its hole, as a prism of 24 sides. It can only leave along its axis, which is a long way.
-    constexpr int count = 24;
-    std::string text = "o bolt\n";
-    const auto circle = [&](double radius, double z) {
-        for (int i = 0; i < count; ++i) {
-            const double angle = 2 * std::numbers::pi * i / count;
-            text += "v " + std::to_string(radius * std::cos(angle)) + ' ' + std::to_string(radius * std::sin(angle)) +
-                    ' ' + std::to_string(z) + '\n';
-        }
-    };
-    const auto sides = [&](int low, int high) {
-        for (int i = 1; i <= count; ++i) {
-            const int next = i % count + 1;
-            text += "f " + std::to_string(low + i) + ' ' + std::to_string(low + next) + ' ' +
-                    std::to_string(high + next) + ' ' + std::to_string(high + i) + '\n';
-        }
-    };
-    circle(1, -3), circle(1, 3);
-    sides(0, count);
-    for (const bool top : {false, true}) {
-        text += "f";
-        for (int i = 1; i <= count; ++i) text += ' ' + std::to_string(top ? count + i : count + 1 - i);
-        text += '\n';
-    }
-    text += "o plate\n";
-    circle(4, 0), circle(4, 1), circle(0.99, 0), circle(0.99, 1);
-    sides(2 * count, 3 * count), sides(5 * count, 4 * count), sides(4 * count, 2 * count), sides(3 * count, 5 * count);
-    write_file(file("bolt.obj"), text);
+    write_file(file("bolt.obj"), bolt_in_plate(0.99));
     const std::string detect = "detect bolt.obj --stage features --output b.jsonl";
     EXPECT_TRUE(has_text(run(detect).err, "classes     1 penetrating"));
     EXPECT_TRUE(has_text(content("b.jsonl"), R"("class":"penetrating")"));

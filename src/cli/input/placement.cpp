@@ -82,7 +82,7 @@ std::string apart_warning(const std::vector<PlacedPart>& models, const SetPair& 
             model.part->path, other->part->path, distance, unit.empty() ? "" : " ", unit, corner_of(model.box),
             corner_of(other->box));
     }
-    // Of two models, each is apart from the other.
+    // With two models, one warning is enough: each is apart from the other.
     if (apart > 2 || (apart > 1 && models.size() > 2)) text += fmt::format(". {} inputs meet no other", apart);
     return text;
 }

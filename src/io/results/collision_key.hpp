@@ -20,7 +20,7 @@
 
 namespace octopair::io {
 
-/// What the keys of a set need besides its names. Most keys are made when they are asked for, so that large sets need little memory.
+/// Data from which the keys of a set are made, besides its names. A key is made when a row needs it, so large sets need little memory.
 struct ObjectKeys {
     std::uint32_t inputs_before = 0;  ///< number of input files of the sets before
     std::unordered_map<std::uint32_t, std::string> repeated =

@@ -60,7 +60,7 @@ struct CollisionNames {
 /// Change of a collision since an older result (baseline.hpp).
 enum class Change : std::uint8_t { begun, same, gone };
 
-/// What people have decided about a collision (statuses.hpp). `begun`: nothing so far.
+/// Decision of people about a collision (statuses.hpp). `begun`: nobody has decided anything.
 enum class Status : std::uint8_t { begun, active, reviewed, approved, resolved };
 
 /// Number of statuses, for arrays that a status indexes.

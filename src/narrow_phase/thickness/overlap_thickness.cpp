@@ -55,7 +55,7 @@ public:
             if (stop_.stop_requested()) break;
             if (proven && examined == max_boxes) proven = false;
             if (!proven) {
-                // What is left may still show a thick ball. The largest boxes come first.
+                // The boxes that remain may still have a thick ball. The largest boxes come first.
                 if (examined == max_boxes + max_boxes_for_balls) break;
                 std::iter_swap(std::max_element(waiting.begin(), waiting.end()), waiting.end() - 1);
             }
@@ -92,7 +92,7 @@ private:
         const double reach = tolerance_ / 2 + surface_.rounding();
         ConvexDomain rounded = rounded_domain(at.box, reach);
         FoundPieces found;
-        surface_.find_pieces(rounded.box, near, 2 * max_pieces, found);
+        if (!surface_.find_pieces(rounded.box, near, 2 * max_pieces, found)) return false;
         if (has_cover(at.box, {rounded.box}, found.pieces, open)) return true;
         // In small boxes, much of the box around lies beyond the reach of balls.
         if (at.longest() > 4 * tolerance_) return false;

@@ -30,7 +30,7 @@ struct OverlapThickness {
 OverlapThickness overlap_thickness(const PosedMesh& a, const PosedMesh& b, double tolerance,
                                    const std::stop_token& stop);
 
-/// The same for a mesh and a convex solid, by a mesh around the solid. Returns `unknown` for a convex hull of points.
+/// Compares the thickness of the overlap of a closed mesh and a convex solid with a tolerance, by a mesh around the solid. Returns `unknown` for a convex hull of points.
 OverlapThickness overlap_thickness(const PosedMesh& mesh, const BoxedSolid& solid, double tolerance,
                                    const std::stop_token& stop);
 

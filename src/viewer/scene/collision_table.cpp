@@ -119,7 +119,7 @@ public:
     }
 
 private:
-    /// What a row leaves out.
+    /// Parts of a row that are left out.
     struct Omitted {
         bool names, contacts;
     };

@@ -92,7 +92,7 @@ struct SceneContents {
     static constexpr std::uint32_t no_shape = 0xFFFFFFFF;
 };
 
-/// What people decided about a collision: a word, which is a static text, and a comment.
+/// Decision of people about a collision: a word, which is a static text, and a comment.
 struct RowStatus {
     std::string_view status;
     std::string comment;
