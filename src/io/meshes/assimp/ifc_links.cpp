@@ -48,8 +48,8 @@ void IfcLinkReader::add(const step::StepInstance& instance) {
     if (is_any_of(instance, system_types)) systems_.insert(instance.number);
     if (!instance.is("IFCREL", true)) return;
     const bool voids = instance.is("IFCRELVOIDSELEMENT"), fills = instance.is("IFCRELFILLSELEMENT");
-    const bool aggregates = instance.is("IFCRELAGGREGATES"), groups = instance.is("IFCRELASSIGNSTOGROUP", true);
-    if (!voids && !fills && !aggregates && !groups) return;
+    const bool aggregates = instance.is("IFCRELAGGREGATES"), assigns = instance.is("IFCRELASSIGNSTOGROUP", true);
+    if (!voids && !fills && !aggregates && !assigns) return;
     const std::vector<std::string_view> numbers = related(instance);
     if (numbers.size() < 2) return;
     if (voids) hosts_.emplace(numbers[1], numbers[0]);
@@ -57,7 +57,7 @@ void IfcLinkReader::add(const step::StepInstance& instance) {
     if (aggregates) {
         for (std::size_t i = 1; i < numbers.size(); ++i) parts_.push_back({numbers[i], numbers[0]});
     }
-    if (groups) {
+    if (assigns) {
         for (std::size_t i = 0; i + 1 < numbers.size(); ++i) members_.push_back({numbers[i], numbers.back()});
     }
 }
