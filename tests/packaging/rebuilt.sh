@@ -7,7 +7,7 @@ packages=$1 folder=$2
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-for package in "$packages"/liboctopair{1,-dev}_*.deb; do dpkg-deb -x "$package" "$work"; done
+for package in "$packages"/liboctopair{2,-dev}_*.deb; do dpkg-deb -x "$package" "$work"; done
 library=$(dirname "$(find "$work" -name liboctopair.so.2)")
 "$root/packaging/debian/tests/block" "$root/README.md" "Ten lines of C++" cpp > "$work/mine.cpp"
 "${CXX:-c++}" -std=c++20 -I "$work/usr/include" "$work/mine.cpp" -L "$library" -loctopair -Wl,-rpath-link,"$library" -o "$work/mine"

@@ -5,6 +5,7 @@
 
 #include "processes/leftovers.hpp"
 #include "service/gate.hpp"
+#include "service/metrics_page.hpp"
 #include "service/protocol/job_hash.hpp"
 #include "service/protocol/messages.hpp"
 #include "service/raw_call.hpp"
@@ -139,22 +140,31 @@ TEST_F(ServedMessages, MoreDataThanSaid) {
     expect_bad(queued.finish(), "more bytes");
 }
 
-/// The input is already released, and the call is still open, because the client has not read its result.
-TEST_F(ServedMessages, DataAndTheEndAfterTheJobHasEnded) {
-    gate_.open();
+/// The input is already released, and the call is still open, because the client has not read its result. The client reads on when the
+/// server has counted the late message.
+TEST(ServedMessagesAfterTheJob, DataAndTheEnd) {
+    const TemporaryDirectory folder;
+    std::ostringstream log;
+    service::ServerOptions options = options_at("unix:" + folder.file("socket"));
+    options.metrics = service::parse_address("localhost:0");
+    const service::Server server(options, log_to(log));
     const std::vector<Box3f> boxes(2000);  // 16 MB of pairs
     const JobSpec crowd = spec_of(boxes.size());
-    for (const auto& late : {upload_of(nullptr, "x"), upload_of(nullptr, {}), upload_of(&crowd, {})}) {
-        RawCall call(channel_);
-        ASSERT_TRUE(call.write(upload_of(&crowd, bytes_of(boxes))));
+    const grpc::ByteBuffer all = upload_of(&crowd, bytes_of(boxes)), nothing = upload_of(nullptr, {});
+    std::size_t sent = 0;
+    for (const auto& late : {upload_of(nullptr, "x"), nothing, upload_of(&crowd, {})}) {
+        RawCall call(open_channel(server.address().text()));
+        ASSERT_TRUE(call.write(all));
         ASSERT_TRUE(call.read());
-        ASSERT_TRUE(comes_true([&] { return served_.load().jobs == 0; }, std::chrono::minutes(1)));
-        (void)call.write(late);
+        ASSERT_TRUE(comes_true([&] { return server.load().jobs == 0; }, std::chrono::minutes(1)));
+        ASSERT_TRUE(call.write(late));
+        sent += all.Length() + late.Length();
+        ASSERT_TRUE(page_has(log, "octopair_received_bytes_total " + std::to_string(sent)));
         (void)call.writes_done();
         const grpc::Status status = call.finish();
-        const bool empty = late.Length() == upload_of(nullptr, {}).Length();
-        EXPECT_EQ(status.ok(), empty) << status.error_message();
+        EXPECT_EQ(status.ok(), late.Length() == nothing.Length()) << status.error_message();
     }
+    check_serves(server.address().text());
 }
 
 TEST_F(ServedMessages, JobsOutOfPlace) {

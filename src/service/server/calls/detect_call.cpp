@@ -37,21 +37,24 @@ public:
     }
 
     void OnReadDone(bool ok) override {
+        const std::size_t bytes = in_.Length();
         try {
             if (!ok) return upload_.finish();
             read();
         } catch (...) {
             refuse(status_of_exception());
+            ok = false;
         }
+        // Counted after the message had its effect, so that who sees the count finds the call refused.
+        server().server_log.received(bytes);
+        if (ok) StartRead(&in_);
     }
 
 private:
     void read() {
-        server().server_log.received(in_.Length());
         upload_.take(in_);
         if (upload_.complete() && !queued_) queue();
         if (upload_.take_progress()) note_progress();
-        StartRead(&in_);
     }
 
     void queue() {
