@@ -118,7 +118,15 @@ Overlap spikes(double overlap) {
             joined(samples::sphere_mesh(20, 3), turned_inside_out(samples::sphere_mesh(10.5 - overlap, 3))), ball};
 }
 
-const std::vector<Overlap (*)(double)> fits = {bolt, dowel, window, spline, gears, cavity, spikes};
+/// A bolt with few sides that sticks out of a plate on both sides.
+template <unsigned corners>
+Overlap pin(double overlap) {
+    return {"pin", ring(regular_outline(corners, 40), regular_outline(corners, 10 - overlap), 0, 3),
+            prism(regular_outline(corners, 10), -10, 15)};
+}
+
+const std::vector<Overlap (*)(double)> fits = {bolt,   dowel,  window, spline, gears,
+                                               cavity, spikes, pin<4>, pin<6>, pin<24>};
 
 TEST(Thickness, SnugFitsTouch) {
     for (const double overlap : {0.0, 1e-4, 0.3}) {
@@ -126,11 +134,20 @@ TEST(Thickness, SnugFitsTouch) {
     }
 }
 
-/// Threads that are flush touch. At the ends of threads that overlap, where three faces meet, no lines along one direction open the overlap: it
-/// stays undecided, but never counts as thick.
-TEST(Thickness, ThreadsAreNeverThick) {
+/// Threads take thousands of boxes, so there is one pose for each overlap.
+TEST(Thickness, ThreadsTouch) {
     expect_class(threads(0), CollisionClass::touching);
-    const Overlap at = threads(0.3);
+    for (const double overlap : {1e-4, 0.3}) {
+        if (sanitized && overlap > 0.1) continue;
+        const Overlap at = threads(overlap);
+        const Finding finding = judged(at.a, at.b, {});
+        EXPECT_EQ(finding.collision_class, CollisionClass::touching) << overlap << ": " << finding.thickness;
+    }
+}
+
+/// At the ends of threads, where three faces meet, larger overlaps stay undecided. They never count as thick.
+TEST(Thickness, ThreadsAreNeverThick) {
+    const Overlap at = threads(0.8);
     EXPECT_NE(judged(at.a, at.b, {}).thickness_kind, ThicknessKind::at_least);
 }
 

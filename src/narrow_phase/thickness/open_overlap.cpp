@@ -13,9 +13,10 @@ namespace octopair {
 
 namespace {
 
-constexpr double facing = 1e-6;   // cosine: pieces that are closer to perpendicular face neither way
-constexpr int max_divisions = 6;  // of a region, into parts of parts
-constexpr int max_tests = 200;    // regions and directions that are tested for a box
+constexpr double facing = 1e-6;     // cosine: pieces that are closer to perpendicular face neither way
+constexpr int max_divisions = 6;    // of a region, into parts of parts
+constexpr int max_tests = 200;      // regions and directions that are tested for a box
+constexpr int max_approaches = 30;  // steps from the mean of normals to the nearest point of their hull
 
 /// Returns the planes of the prism along `direction` over points: its sides touch the convex hull of the points.
 std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point3d& direction) {
@@ -56,12 +57,21 @@ std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point
 }
 
 /// Returns the part of a polygon below all planes; empty if it only touches one of them.
-Polygon part_within(Polygon polygon, const std::vector<CutPlane>& planes, double rounding) {
-    for (const CutPlane& plane : planes) {
-        polygon = split(polygon, plane, rounding).below;
-        if (polygon.empty() || extent_along(plane.normal, polygon).low > plane.offset - rounding) return {};
+Polygon part_within(const Polygon& polygon, std::span<const CutPlane> planes, double rounding) {
+    const auto is_beyond = [&](const CutPlane& plane, const Polygon& part) {
+        return extent_along(plane.normal, part).low > plane.offset - rounding;
+    };
+    // Most polygons are beyond some plane: look before one is copied.
+    if (polygon.empty() ||
+        std::any_of(planes.begin(), planes.end(), [&](const auto& plane) { return is_beyond(plane, polygon); })) {
+        return {};
     }
-    return polygon;
+    Polygon part = polygon;
+    for (const CutPlane& plane : planes) {
+        part = cut_below(std::move(part), plane, rounding);
+        if (part.empty() || is_beyond(plane, part)) return {};
+    }
+    return part;
 }
 
 /// Part of a piece on the lines that are tested.
@@ -87,6 +97,7 @@ private:
     bool opens_along_any(const Polyhedron& region, const Point3d& direction, int divisions) {
         if (is_outside(region) || opens(region, direction)) return true;
         if (const auto mean = mean_normal(region); mean && opens(region, *mean)) return true;
+        if (const auto common = common_way_out(region); common && opens(region, *common)) return true;
         if (divisions == 0 || tests_ > max_tests) return false;
         const auto parts = divided(region, direction);
         return parts && opens_along_any((*parts)[0], direction, divisions - 1) &&
@@ -105,34 +116,31 @@ private:
     /// Returns the parts of a region on the two sides of the plane of a piece: of all that cross it, the one that is nearest to parallel to
     /// `direction`. Returns nothing if none crosses it.
     std::optional<std::array<Polyhedron, 2>> divided(const Polyhedron& region, const Point3d& direction) const {
-        std::optional<std::array<Polyhedron, 2>> parts;
-        double least = 2;
+        std::vector<std::pair<double, const Piece*>> by_cosine;
         for (const Piece& piece : request_.pieces) {
-            const double cosine = std::abs(vector::dot(piece.normal, direction));
-            if (cosine >= least) continue;
-            const CutPlane plane{piece.normal, vector::dot(piece.normal, piece.polygon.corners[0])};
+            by_cosine.emplace_back(std::abs(vector::dot(piece.normal, direction)), &piece);
+        }
+        std::stable_sort(by_cosine.begin(), by_cosine.end(),
+                         [](const auto& x, const auto& y) { return x.first < y.first; });
+        for (const auto& [cosine, piece] : by_cosine) {
+            const CutPlane plane{piece->normal, vector::dot(piece->normal, piece->polygon.corners[0])};
             const auto [low, high] = region.along(plane.normal);
             if (low > plane.offset - 4 * rounding_ || high < plane.offset + 4 * rounding_) continue;
             std::array<Polyhedron, 2> sides = {region, region};
             sides[0].cut(plane, rounding_);
             sides[1].cut({vector::times(plane.normal, -1), -plane.offset}, rounding_);
-            if (sides[0].empty() || sides[1].empty()) continue;
-            parts = std::move(sides);
-            least = cosine;
+            if (!sides[0].empty() && !sides[1].empty()) return sides;
         }
-        return parts;
+        return std::nullopt;
     }
 
     /// Tests the lines along `direction` through the region.
     bool opens(const Polyhedron& region, const Point3d& direction) {
         if (++tests_ > max_tests) return false;
         const std::vector<CutPlane> sides = prism_over(region.corners(), direction);
-        Polyhedron column = request_.domain;
-        for (const CutPlane& side : sides) column.cut(side, rounding_);
-        if (column.empty()) return false;
         std::vector<LinePart> parts = parts_within(sides, direction);
         Extent extent = region.along(direction);
-        if (!widen({column, parts, direction}, extent)) return false;
+        if (!widen({region.middle(), parts, direction}, extent)) return false;
         std::erase_if(parts, [&](const LinePart& part) {
             return part.extent.low > extent.high + rounding_ || part.extent.high < extent.low - rounding_;
         });
@@ -150,9 +158,9 @@ private:
         return parts;
     }
 
-    /// Lines along one direction: the part of the domain that they cover, and the parts of pieces on them.
+    /// Lines along one direction: a point on one of them, and the parts of pieces on them.
     struct Lines {
-        const Polyhedron& column;
+        Point3d middle;
         const std::vector<LinePart>& parts;
         const Point3d& direction;
     };
@@ -184,10 +192,9 @@ private:
                     beyond = std::max(beyond, farthest(part));
             }
             if (beyond == at) {
-                const auto middle = lines.column.middle_of_section({lines.direction, from + sense * at});
-                if (!middle) return std::nullopt;
-                if (!request_.surface.in_both(
-                        vector::plus(*middle, vector::times(lines.direction, 16 * sense * rounding_)))) {
+                // No piece crosses the lines just beyond: one point decides for all of them.
+                const double beside = from + sense * (at + 16 * rounding_) - vector::dot(lines.direction, lines.middle);
+                if (!request_.surface.in_both(vector::plus(lines.middle, vector::times(lines.direction, beside)))) {
                     return from + sense * at;
                 }
                 beyond = std::numeric_limits<double>::infinity();
@@ -265,6 +272,40 @@ private:
         }
         const double length = vector::length(sum);
         return length > 0 ? direction_of(vector::times(sum, 1 / length)) : std::nullopt;
+    }
+
+    /// Returns a direction that agrees with all normals of the pieces that touch a region, those of b turned around; nothing if there is none.
+    /// Of all directions, its smallest cosine with a normal is the largest: it leads from the origin to the nearest point of the normals' convex
+    /// hull. Found step by step as by Gilbert 1966, "An iterative procedure for computing the minimum of a quadratic form on a convex set".
+    std::optional<Point3d> common_way_out(const Polyhedron& region) {
+        std::vector<Point3d> normals;
+        for (const Piece& piece : request_.pieces) {
+            if (!touches(region, piece.polygon)) continue;
+            if (!outward(piece)) return std::nullopt;
+            normals.push_back(vector::times(outward_normal(piece), piece.side == 0 ? 1 : -1));
+        }
+        if (normals.empty()) return std::nullopt;
+        Point3d nearest = normals[0];
+        for (int i = 0; i < max_approaches; ++i) {
+            const Point3d& least = *std::min_element(
+                normals.begin(), normals.end(),
+                [&](const Point3d& p, const Point3d& q) { return vector::dot(p, nearest) < vector::dot(q, nearest); });
+            const Point3d way = vector::minus(least, nearest);
+            const double part = -vector::dot(nearest, way) / vector::dot(way, way);
+            if (!(part > 1e-3)) break;  // near enough
+            nearest = vector::plus(nearest, vector::times(way, std::min(part, 1.0)));
+        }
+        const double length = vector::length(nearest);
+        return length > 0.01 ? direction_of(vector::times(nearest, 1 / length)) : std::nullopt;
+    }
+
+    /// Returns whether the polygon meets the region, or its surface.
+    bool touches(const Polyhedron& region, Polygon polygon) const {
+        for (const CutPlane& plane : region.planes()) {
+            polygon = cut_below(std::move(polygon), {plane.normal, plane.offset + 4 * rounding_}, rounding_);
+            if (polygon.empty()) return false;
+        }
+        return true;
     }
 
     /// Says which way the solid of a piece faces along a direction: 1 along it, -1 against it, 0 neither; nothing if the solid is on both

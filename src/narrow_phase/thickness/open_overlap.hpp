@@ -4,7 +4,7 @@
 //           through the surface of b, and both places are at most the tolerance apart.
 // Regions   The test takes convex regions. All lines along one direction through a region are tested together. If they do not open it, the planes
 //           of pieces divide the region.
-// Domain    It contains all points within the tolerance of the regions, so it has all ends of such lines.
+// Ends      The pieces within the tolerance of a region have all ends of such lines.
 // Rounding  Regions that are nowhere wider than about `rounding` are left out.
 #pragma once
 
@@ -17,8 +17,7 @@ namespace octopair {
 
 struct OpenRequest {
     const OverlapSurface& surface;
-    const Polyhedron& domain;
-    std::span<const Piece> pieces;  ///< all pieces in the domain
+    std::span<const Piece> pieces;  ///< all pieces within the tolerance of the box
     double most;                    ///< the tolerance
 };
 

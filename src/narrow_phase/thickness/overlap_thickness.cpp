@@ -19,7 +19,7 @@ namespace octopair {
 
 namespace {
 
-constexpr std::size_t max_boxes = 2000;          // that a search for a proof examines
+constexpr std::size_t max_boxes = 5000;          // that a search for a proof examines
 constexpr std::size_t max_boxes_for_balls = 64;  // that it examines after it failed
 constexpr std::size_t max_pieces = 96;           // boxes with more pieces are divided at once
 
@@ -79,16 +79,15 @@ private:
     /// that count in the box.
     bool is_thin(const SearchBox& at, NearLists& near) {
         // All ends of lines that open a point of the box are within the tolerance of it.
-        const ConvexDomain wide{grown(at.box, tolerance_ + surface_.rounding())};
+        const Box3d wide = grown(at.box, tolerance_ + surface_.rounding());
         FoundPieces around;
-        const bool few = surface_.find_pieces(wide.box, at.near, max_pieces, around);
+        const bool few = surface_.find_pieces(wide, at.near, max_pieces, around);
         near = around.near;
         if (!few) {
             test_ball(middle_of(at.box));
             return false;
         }
-        const Polyhedron domain(wide, surface_.rounding());
-        const OpenRequest open{surface_, domain, around.pieces, tolerance_ + surface_.rounding()};
+        const OpenRequest open{surface_, around.pieces, tolerance_ + surface_.rounding()};
         const double reach = tolerance_ / 2 + surface_.rounding();
         ConvexDomain rounded = rounded_domain(at.box, reach);
         FoundPieces found;
@@ -108,7 +107,7 @@ private:
     /// Removes the parts of the pieces outside of the domain.
     static void cut_off(const ConvexDomain& domain, std::vector<Piece>& pieces) {
         for (Piece& piece : pieces) {
-            for (const CutPlane& plane : domain.planes) piece.polygon = split(piece.polygon, plane, 0).below;
+            for (const CutPlane& plane : domain.planes) piece.polygon = cut_below(std::move(piece.polygon), plane, 0);
             piece.area = area_of(piece.polygon);
         }
         std::erase_if(pieces, [](const Piece& piece) { return piece.polygon.empty(); });

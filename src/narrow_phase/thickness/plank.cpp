@@ -80,7 +80,7 @@ void Polyhedron::cut(const CutPlane& plane, double rounding) {
     std::vector<Polygon> kept;
     Polygon cap;
     for (const Polygon& face : faces_) {
-        Polygon below = split(face, plane, rounding).below;
+        Polygon below = cut_below(face, plane, rounding);
         for (const Point3d& corner : below.corners) {
             if (std::abs(plane.height(corner)) <= rounding) cap.corners.push_back(corner);
         }
@@ -121,22 +121,6 @@ std::vector<Point3d> Polyhedron::corners() const {
     std::vector<Point3d> corners;
     for (const Polygon& face : faces_) corners.insert(corners.end(), face.corners.begin(), face.corners.end());
     return corners;
-}
-
-std::optional<Point3d> Polyhedron::middle_of_section(const CutPlane& plane) const {
-    Point3d sum = {};
-    double count = 0;
-    for (const Polygon& face : faces_) {
-        for (std::size_t i = 0; i < face.corners.size(); ++i) {
-            const Point3d &from = face.corners[i], &to = face.corners[(i + 1) % face.corners.size()];
-            const double at = plane.height(from), next = plane.height(to);
-            if ((at <= 0) == (next <= 0)) continue;
-            sum = vector::plus(sum, vector::plus(from, vector::times(vector::minus(to, from), at / (at - next))));
-            ++count;
-        }
-    }
-    if (count == 0) return std::nullopt;
-    return vector::times(sum, 1 / count);
 }
 
 std::vector<CutPlane> planes_of(const Box3d& box) {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,8 +62,6 @@ public:
     std::vector<Point3d> corners() const;
     /// The polyhedron is all that is below these planes.
     const std::vector<CutPlane>& planes() const { return planes_; }
-    /// Returns a point of the section with a plane; nothing if they do not meet.
-    std::optional<Point3d> middle_of_section(const CutPlane& plane) const;
 
 private:
     std::vector<Polygon> faces_;

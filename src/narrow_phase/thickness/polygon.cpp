@@ -87,4 +87,12 @@ SplitPolygon split(const Polygon& polygon, const CutPlane& plane, double roundin
             part_below(polygon, [&](const Point3d& corner) { return -plane.height(corner); })};
 }
 
+Polygon cut_below(Polygon polygon, const CutPlane& plane, double rounding) {
+    if (polygon.empty()) return {};
+    const auto [low, high] = extent_along(plane.normal, polygon);
+    if (high <= plane.offset + rounding) return polygon;
+    if (low >= plane.offset - rounding) return {};
+    return part_below(polygon, [&](const Point3d& corner) { return plane.height(corner); });
+}
+
 }  // namespace octopair

@@ -51,5 +51,7 @@ struct SplitPolygon {
         above;  ///< empty if the polygon does not reach further than `rounding` beyond the plane on this side
 };
 SplitPolygon split(const Polygon& polygon, const CutPlane& plane, double rounding);
+/// Returns SplitPolygon::below alone.
+Polygon cut_below(Polygon polygon, const CutPlane& plane, double rounding);
 
 }  // namespace octopair
