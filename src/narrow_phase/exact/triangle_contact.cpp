@@ -163,9 +163,9 @@ private:
     TriangleContact contact_;
 };
 
-struct Extent {
+struct TriangleExtent {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    Extent(const Triangle3d& triangle, const Point3d& direction) {
+    TriangleExtent(const Triangle3d& triangle, const Point3d& direction) {
         for (const Point3d& corner : triangle) {
             const double at = dot(direction, corner);
             low = std::min(low, at), high = std::max(high, at);
@@ -182,7 +182,7 @@ public:
         const double length = vector::length(direction);
         if (!(length > 1e-300)) return;
         const Point3d normal = times(direction, 1 / length);
-        const Extent a(near_.a, normal), b(near_.b, normal);
+        const TriangleExtent a(near_.a, normal), b(near_.b, normal);
         const double forward = a.high - b.low, backward = b.high - a.low;
         const double depth = std::max(0.0, std::min(forward, backward));
         if (found_ && !(depth < out_.depth)) return;

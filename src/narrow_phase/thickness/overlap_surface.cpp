@@ -31,7 +31,7 @@ Box3d box_of(const Points& points) {
 }
 
 /// Returns a box around the mesh, from the root of its hierarchy.
-Box3d world_box(const PosedMesh& mesh) {
+Box3d root_box(const PosedMesh& mesh) {
     const WorldBoxes boxes(mesh);
     Box3d box;
     for (int row = 0; row < 3; ++row) {
@@ -119,7 +119,7 @@ void cut_all(std::vector<Polygon>& polygons, const CutPlane& plane, double round
 }  // namespace
 
 OverlapSurface::OverlapSurface(const PosedMesh& a, const PosedMesh& b, double reach) : meshes_{&a, &b} {
-    common_ = common_box_of(world_box(a), world_box(b));
+    common_ = common_box_of(root_box(a), root_box(b));
     double largest = reach;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         largest = std::max({largest, std::abs(common_.min[axis]), std::abs(common_.max[axis])});

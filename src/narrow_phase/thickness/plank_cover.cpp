@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t max_planks = 6;  // that a search proposes
 constexpr int max_widenings = 8;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 // Proposals: planks that cover the pieces.
 
@@ -27,7 +27,7 @@ std::optional<Plank> single_plank(std::span<const Piece> pieces) {
     }
     const auto normal = area > 0 ? direction_of(vector::times(sum, 1 / area)) : std::nullopt;
     if (!normal) return std::nullopt;
-    Plank plank{*normal, {infinity, -infinity}};
+    Plank plank{*normal, {unlimited, -unlimited}};
     for (const Piece& piece : pieces) plank = plank.widened(extent_along(*normal, piece.polygon));
     return plank;
 }
@@ -145,7 +145,7 @@ private:
     /// Widens the plank that needs the least for it, so that it covers the region.
     static void widen_nearest(std::vector<Plank>& planks, const Polyhedron& region) {
         Plank* nearest = nullptr;
-        double least = infinity;
+        double least = unlimited;
         for (Plank& plank : planks) {
             const double more = plank.widened(region.along(plank.normal)).width() - plank.width();
             if (more < least) least = more, nearest = &plank;
