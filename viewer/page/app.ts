@@ -5,7 +5,7 @@ import {toneOf} from './collision.ts';
 import {counted, isAbort, messageOf} from './dom.ts';
 import {contactColour} from './contact_layer.ts';
 import {glassOpacity, Pass, passOf} from './draw_pass.ts';
-import {bestView, type Focus, focusOf, sectionOf} from './focus.ts';
+import {bestView, type Focus, focusOf, leastArrow, sectionOf} from './focus.ts';
 import {hideLabel, octantText, placeDepths, showLabel, showScale} from './hover.ts';
 import {isDark} from './layout.ts';
 import {Link} from './link.ts';
@@ -533,7 +533,7 @@ export class App {
     const pair = focus && collision && this.settings.values.contacts !== 'none' ? {row: collision, focus} : null;
     const others = pair ? rows.filter(row => row.a !== collision!.a || row.b !== collision!.b) : rows;
     stage.contacts.show(this.model, pair ? [...others, collision!] : others, pair,
-      {palette: this.palette(), least: focus ? 0.15 * focus.reach : 0.02 * stage.camera.radius()});
+      {palette: this.palette(), least: focus ? leastArrow(focus) : 0.02 * stage.camera.radius()});
     stage.invalidate();
   }
 
@@ -551,9 +551,11 @@ export class App {
     const first = collision?.contacts?.[0];
     if (!this.focus || !first || this.settings.values.contacts === 'none') return [];
     const colour = contactColour(collision, this.palette());
-    const arrow = first.normal && first.depth !== undefined;
-    return [{text: 'contacts, with the deepest labelled', colour, mark: '●'},
-      ...(arrow ? [{text: `the way out of it for the ${this.selection.objects[0] === collision!.a ? 'second' : 'first'} object`, colour, mark: '→'}] : [])];
+    const contacts = {text: 'contacts, with the deepest labelled', colour, mark: '●'};
+    if (!first.normal || first.depth === undefined) return [contacts];
+    const object = this.selection.objects[0] === collision!.a ? 'second' : 'first';
+    const stretched = Math.abs(first.depth) < leastArrow(this.focus) ? ', longer than the depth' : '';
+    return [contacts, {text: `the way out of it for the ${object} object${stretched}`, colour, mark: '→'}];
   }
 
   // A notice that stays, such as the end of the program.

@@ -113,3 +113,8 @@ export function sectionOf({mark, normal, reach}: Focus, view: THREE.Vector3): Co
   const axis = [0, 1, 2].reduce((best, k) => value(k) > value(best) ? k : best, 0);
   return {axis, at: mark.getComponent(axis), reach, high: view.getComponent(axis) > 0};
 }
+
+// The length of the shortest arrow that can be seen at the mark.
+export function leastArrow({reach}: Focus): number {
+  return 0.15 * reach;
+}

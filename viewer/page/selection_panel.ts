@@ -103,7 +103,7 @@ export class SelectionPanel {
     const entries: [string, string][] = [];
     const {unit} = this.model.view;
     const thickness = thicknessOf(row);
-    if (thickness) entries.push(['thickness', unit ? `${thickness} ${unit}` : thickness]);
+    if (thickness) entries.push(['overlap thickness', unit ? `${thickness} ${unit}` : thickness]);
     const place = isGone(row) ? null : this.actions.place();
     if (place) entries.push(['where', [this.common(row, 'level').join(' and '), `${pointText(row)(place)}${unit ? ` ${unit}` : ''}`].filter(text => text).join(', at ')]);
     if (row.time !== undefined) entries.push(['time', plain(row.time)]);
