@@ -125,8 +125,16 @@ Overlap pin(double overlap) {
             prism(regular_outline(corners, 10), -10, 15)};
 }
 
-const std::vector<Overlap (*)(double)> fits = {bolt,   dowel,  window, spline, gears,
-                                               cavity, spikes, pin<4>, pin<6>, pin<24>};
+/// A block between two wedges, whose acute edges lie on it.
+Overlap clamp(double overlap) {
+    const shape::Mesh below = prism({{0, 0}, {0, -50}, {50, -50}, {100, 0}}, 0, 300),
+                      above = prism({{0, 40}, {100, 40}, {50, 90}, {0, 90}}, 0, 300);
+    return {"block between acute edges", joined(below, above),
+            prism({{-30, -overlap}, {200, -overlap}, {200, 40 + overlap}, {-30, 40 + overlap}}, 100, 200)};
+}
+
+const std::vector<Overlap (*)(double)> fits = {bolt,   dowel,  window, spline,  gears, cavity,
+                                               spikes, pin<4>, pin<6>, pin<24>, clamp};
 
 TEST(Thickness, SnugFitsTouch) {
     for (const double overlap : {0.0, 1e-4, 0.3}) {

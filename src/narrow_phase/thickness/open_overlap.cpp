@@ -92,14 +92,21 @@ public:
     }
 
 private:
-    /// Tests lines along the direction through the region, and along the mean normal. If neither opens all of the region, tests its parts: the
-    /// planes of pieces divide it.
+    /// Tests lines along the direction through the region, and along other directions. If none opens all of the region, tests its parts. The lines
+    /// that failed are divided from the others; else the planes of pieces divide the region.
     bool opens_along_any(const Polyhedron& region, const Point3d& direction, int divisions) {
+        conflict_.clear();
         if (is_outside(region) || opens(region, direction)) return true;
-        if (const auto mean = mean_normal(region); mean && opens(region, *mean)) return true;
-        if (const auto common = common_way_out(region); common && opens(region, *common)) return true;
+        const std::vector<CutPlane> conflict = std::move(conflict_);
+        const auto mean = mean_normal(region);
+        if (mean && opens(region, *mean)) return true;
+        const std::vector<Point3d> normals = normals_around(region);
+        if (const auto common = common_way_out(normals); common && opens(region, *common)) return true;
+        if (const auto along = mean ? way_along(normals, *mean) : std::nullopt; along && opens(region, *along))
+            return true;
         if (divisions == 0 || tests_ > max_tests) return false;
-        const auto parts = divided(region, direction);
+        auto parts = divided(region, conflict);
+        if (!parts) parts = divided(region, planes_of_pieces(direction));
         return parts && opens_along_any((*parts)[0], direction, divisions - 1) &&
                opens_along_any((*parts)[1], direction, divisions - 1);
     }
@@ -113,17 +120,9 @@ private:
         return !has_piece && !request_.surface.in_both(region.middle());
     }
 
-    /// Returns the parts of a region on the two sides of the plane of a piece: of all that cross it, the one that is nearest to parallel to
-    /// `direction`. Returns nothing if none crosses it.
-    std::optional<std::array<Polyhedron, 2>> divided(const Polyhedron& region, const Point3d& direction) const {
-        std::vector<std::pair<double, const Piece*>> by_cosine;
-        for (const Piece& piece : request_.pieces) {
-            by_cosine.emplace_back(std::abs(vector::dot(piece.normal, direction)), &piece);
-        }
-        std::stable_sort(by_cosine.begin(), by_cosine.end(),
-                         [](const auto& x, const auto& y) { return x.first < y.first; });
-        for (const auto& [cosine, piece] : by_cosine) {
-            const CutPlane plane{piece->normal, vector::dot(piece->normal, piece->polygon.corners[0])};
+    /// Returns the parts of a region on the two sides of the first plane that crosses it; nothing if none does.
+    std::optional<std::array<Polyhedron, 2>> divided(const Polyhedron& region, std::span<const CutPlane> planes) const {
+        for (const CutPlane& plane : planes) {
             const auto [low, high] = region.along(plane.normal);
             if (low > plane.offset - 4 * rounding_ || high < plane.offset + 4 * rounding_) continue;
             std::array<Polyhedron, 2> sides = {region, region};
@@ -132,6 +131,18 @@ private:
             if (!sides[0].empty() && !sides[1].empty()) return sides;
         }
         return std::nullopt;
+    }
+
+    /// Returns the planes of all pieces. Those that are nearest to parallel to `direction` come first.
+    std::vector<CutPlane> planes_of_pieces(const Point3d& direction) const {
+        std::vector<CutPlane> planes;
+        for (const Piece& piece : request_.pieces) {
+            planes.push_back({piece.normal, vector::dot(piece.normal, piece.polygon.corners[0])});
+        }
+        std::stable_sort(planes.begin(), planes.end(), [&](const CutPlane& p, const CutPlane& q) {
+            return std::abs(vector::dot(p.normal, direction)) < std::abs(vector::dot(q.normal, direction));
+        });
+        return planes;
     }
 
     /// Tests the lines along `direction` through the region.
@@ -253,11 +264,13 @@ private:
         const Point3d up = vector::minus(middle_of(common), pair.below.polygon.corners[0]);
         // The line leaves the solid below the place where it enters.
         if (vector::dot(outward_normal(*pair.below.piece), up) >= -rounding_) return false;
-        const std::vector<CutPlane> sides = prism_over(common.corners, direction);
+        std::vector<CutPlane> sides = prism_over(common.corners, direction);
         if (sides.size() < 3) return false;  // no area
         const Polygon entrance = part_within(pair.below.polygon, sides, rounding_);
-        return !is_shared(common, pair.above, pair.all, direction) &&
-               (entrance.empty() || !is_shared(entrance, pair.below, pair.all, direction));
+        if (is_shared(common, pair.above, pair.all, direction)) return false;
+        if (!entrance.empty() && is_shared(entrance, pair.below, pair.all, direction)) return false;
+        conflict_ = std::move(sides);
+        return true;
     }
 
     /// Returns the mean normal of the pieces around a region, those of b turned around: the way that a moves out of b, if all pieces agree.
@@ -274,29 +287,47 @@ private:
         return length > 0 ? direction_of(vector::times(sum, 1 / length)) : std::nullopt;
     }
 
-    /// Returns a direction that agrees with all normals of the pieces that touch a region, those of b turned around; nothing if there is none.
-    /// Of all directions, its smallest cosine with a normal is the largest: it leads from the origin to the nearest point of the normals' convex
-    /// hull. Found step by step as by Gilbert 1966, "An iterative procedure for computing the minimum of a quadratic form on a convex set".
-    std::optional<Point3d> common_way_out(const Polyhedron& region) {
+    /// Returns the normals of the pieces that touch a region, those of b turned around; nothing if the solid of one is not known.
+    std::vector<Point3d> normals_around(const Polyhedron& region) {
         std::vector<Point3d> normals;
         for (const Piece& piece : request_.pieces) {
             if (!touches(region, piece.polygon)) continue;
-            if (!outward(piece)) return std::nullopt;
+            if (!outward(piece)) return {};
             normals.push_back(vector::times(outward_normal(piece), piece.side == 0 ? 1 : -1));
         }
+        return normals;
+    }
+
+    /// Returns the normal that agrees least with a direction. Requires: there is one.
+    static const Point3d& least_along(const std::vector<Point3d>& normals, const Point3d& direction) {
+        return *std::min_element(normals.begin(), normals.end(), [&](const Point3d& p, const Point3d& q) {
+            return vector::dot(p, direction) < vector::dot(q, direction);
+        });
+    }
+
+    /// Returns a direction that agrees with all normals; nothing if there is none. Of all directions, its smallest cosine with a normal is the
+    /// largest: it leads from the origin to the nearest point of the normals' convex hull. Found step by step as by Gilbert 1966, "An iterative
+    /// procedure for computing the minimum of a quadratic form on a convex set".
+    static std::optional<Point3d> common_way_out(const std::vector<Point3d>& normals) {
         if (normals.empty()) return std::nullopt;
         Point3d nearest = normals[0];
         for (int i = 0; i < max_approaches; ++i) {
-            const Point3d& least = *std::min_element(
-                normals.begin(), normals.end(),
-                [&](const Point3d& p, const Point3d& q) { return vector::dot(p, nearest) < vector::dot(q, nearest); });
-            const Point3d way = vector::minus(least, nearest);
+            const Point3d way = vector::minus(least_along(normals, nearest), nearest);
             const double part = -vector::dot(nearest, way) / vector::dot(way, way);
             if (!(part > 1e-3)) break;  // near enough
             nearest = vector::plus(nearest, vector::times(way, std::min(part, 1.0)));
         }
         const double length = vector::length(nearest);
         return length > 0.01 ? direction_of(vector::times(nearest, 1 / length)) : std::nullopt;
+    }
+
+    /// Returns the direction along the face that agrees least with `mean`, as near to `mean` as possible; nothing if all faces agree. At an acute
+    /// edge, lines along one of its faces are the shortest that cross the other face alone.
+    static std::optional<Point3d> way_along(const std::vector<Point3d>& normals, const Point3d& mean) {
+        if (normals.empty()) return std::nullopt;
+        const Point3d& least = least_along(normals, mean);
+        const double against = vector::dot(least, mean);
+        return against < 0 ? direction_of(vector::minus(mean, vector::times(least, against))) : std::nullopt;
     }
 
     /// Returns whether the polygon meets the region, or its surface.
@@ -335,6 +366,8 @@ private:
     const OpenRequest& request_;
     double rounding_;
     std::vector<std::optional<int>> outward_;  // by piece: 1, -1, or 0 if the solid is on both sides or on none
+    /// Sides of the prism of lines that failed the last test, because they enter and leave through one solid alone; or empty.
+    std::vector<CutPlane> conflict_;
     int tests_ = 0;
 };
 

@@ -118,7 +118,7 @@ void cut_all(std::vector<Polygon>& polygons, const CutPlane& plane, double round
 
 }  // namespace
 
-OverlapSurface::OverlapSurface(const PosedMesh& a, const PosedMesh& b, double reach) : meshes_{&a, &b} {
+OverlapSurface::OverlapSurface(const PosedMesh& a, const PosedMesh& b, double reach) : meshes_{&a, &b}, reach_(reach) {
     common_ = common_box_of(root_box(a), root_box(b));
     double largest = reach;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -131,17 +131,19 @@ OverlapSurface::OverlapSurface(const PosedMesh& a, const PosedMesh& b, double re
     // Not finite beyond the range of float32. Then nothing is near, and the caller must not decide anything.
     if (!std::isfinite(rounding_ + centre_[0] + centre_[1] + centre_[2])) {
         rounding_ = std::numeric_limits<double>::infinity();
-        return;
     }
-    find_near(reach);
+}
+
+void OverlapSurface::find_triangles() {
+    find_near();
     find_meetings();
 }
 
-void OverlapSurface::find_near(double reach) {
+void OverlapSurface::find_near() {
     Box3d near = common_;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        near.min[axis] += centre_[axis] - reach - rounding_;
-        near.max[axis] += centre_[axis] + reach + rounding_;
+        near.min[axis] += centre_[axis] - reach_ - rounding_;
+        near.max[axis] += centre_[axis] + reach_ + rounding_;
     }
     for (const unsigned number : {0U, 1U}) {
         const PosedMesh& mesh = *meshes_[number];

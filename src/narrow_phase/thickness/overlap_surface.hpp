@@ -54,6 +54,9 @@ public:
     /// Borrows the meshes. Requires: both meshes are closed. `reach`: how far around the common box triangles are near.
     OverlapSurface(const PosedMesh& a, const PosedMesh& b, double reach);
 
+    /// Finds the triangles that may have pieces. Until then there are no pieces. Requires: rounding() is finite.
+    void find_triangles();
+
     /// Common box of the meshes; empty if min > max on an axis.
     const Box3d& common_box() const { return common_; }
     double rounding() const { return rounding_; }
@@ -69,7 +72,7 @@ public:
     Point3d world(const Point3d& point) const { return vector::plus(point, centre_); }
 
 private:
-    void find_near(double reach);
+    void find_near();
     void find_meetings();
     void add_pieces(unsigned side, const NearTriangle& triangle, const Polygon& polygon,
                     std::vector<Piece>& pieces) const;
@@ -79,7 +82,7 @@ private:
     std::array<OverlapSide, 2> sides_;
     Point3d centre_ = {};
     Box3d common_ = {};  // relative to centre_
-    double rounding_ = 0;
+    double reach_, rounding_ = 0;
 };
 
 }  // namespace octopair

@@ -47,6 +47,10 @@ public:
     OverlapThickness run() {
         // Rounding must be small beside the tolerance; and boxes beyond the range of float32 are not known.
         if (!(surface_.rounding() <= tolerance_ / 1024)) return {ThicknessKind::undecided, 0};
+        // Most thick overlaps have a thick ball in the middle.
+        test_ball(middle_of(surface_.common_box()));
+        if (found_ > tolerance_) return {ThicknessKind::at_least, found_};
+        surface_.find_triangles();
         // Depth first: a box that cannot be decided ends the search for a proof soon.
         std::vector<SearchBox> waiting;
         waiting.push_back({surface_.common_box(), surface_.all_near()});
