@@ -137,7 +137,7 @@ const std::vector<Overlap (*)(double)> fits = {bolt,   dowel,  window, spline,  
                                                spikes, pin<4>, pin<6>, pin<24>, clamp};
 
 TEST(Thickness, SnugFitsTouch) {
-    for (const double overlap : {0.0, 1e-4, 0.3}) {
+    for (const double overlap : {0.0, 1e-4, 0.45}) {
         for (const auto make : fits) expect_class(make(overlap), CollisionClass::touching);
     }
 }

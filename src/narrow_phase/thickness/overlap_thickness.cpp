@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "narrow_phase/exact/triangle_pair.hpp"
 #include "narrow_phase/mesh/mesh_probe.hpp"
 #include "narrow_phase/thickness/open_overlap.hpp"
 #include "narrow_phase/thickness/outer_mesh.hpp"
@@ -27,16 +29,15 @@ struct SearchBox {
     Box3d box;
     NearLists near;
 
-    std::size_t longest_axis() const {
-        std::size_t longest = 0;
-        for (const std::size_t axis : {std::size_t(1), std::size_t(2)}) {
-            if (length(axis) > length(longest)) longest = axis;
-        }
-        return longest;
-    }
     double length(std::size_t axis) const { return box.max[axis] - box.min[axis]; }
-    double longest() const { return length(longest_axis()); }
+    double longest() const { return std::max({length(0), length(1), length(2)}); }
     bool operator<(const SearchBox& other) const { return longest() < other.longest(); }
+};
+
+/// What the search found around a box.
+struct Surroundings {
+    NearLists near;              ///< triangles that count in the box
+    Point3d slopes = {1, 1, 1};  ///< for each axis, the greatest coordinate of a piece's normal
 };
 
 class ThicknessSearch {
@@ -65,11 +66,11 @@ public:
             }
             const SearchBox at = std::move(waiting.back());
             waiting.pop_back();
-            NearLists near;
-            if (is_thin(at, near)) continue;
+            Surroundings around;
+            if (is_thin(at, around)) continue;
             if (found_ > tolerance_ || pierced_) return {ThicknessKind::at_least, found_};
             if (at.longest() > tolerance_ / 8) {
-                divide(at, near, waiting);
+                divide(at, around, waiting);
             } else if (proven) {
                 proven = false;
                 examined = max_boxes;
@@ -79,24 +80,25 @@ public:
     }
 
 private:
-    /// Returns true if no ball thicker than the tolerance has its centre in the box, and the overlap opens there. Sets `near` to the triangles
-    /// that count in the box.
-    bool is_thin(const SearchBox& at, NearLists& near) {
+    /// Returns true if no ball thicker than the tolerance has its centre in the box, and the overlap opens there. Describes what is around
+    /// the box.
+    bool is_thin(const SearchBox& at, Surroundings& around) {
         // All ends of lines that open a point of the box are within the tolerance of it.
         const Box3d wide = grown(at.box, tolerance_ + surface_.rounding());
-        FoundPieces around;
-        const bool few = surface_.find_pieces(wide, at.near, max_pieces, around);
-        near = around.near;
+        FoundPieces all;
+        const bool few = surface_.find_pieces(wide, at.near, max_pieces, all);
+        around.near = all.near;
         if (!few) {
             test_ball(middle_of(at.box));
             return false;
         }
-        const OpenRequest open{surface_, around.pieces, tolerance_ + surface_.rounding()};
+        around.slopes = slopes_of(all.pieces);
+        const OpenRequest open{surface_, all.pieces, tolerance_ + surface_.rounding()};
         const double reach = tolerance_ / 2 + surface_.rounding();
         ConvexDomain rounded = rounded_domain(at.box, reach);
         FoundPieces found;
-        if (!surface_.find_pieces(rounded.box, near, 2 * max_pieces, found)) return false;
-        if (has_cover(at.box, {rounded.box}, found.pieces, open)) return true;
+        if (!surface_.find_pieces(rounded.box, around.near, 2 * max_pieces, found)) return false;
+        if (has_cover(at.box, {rounded.box}, found.pieces, open) || is_along_piece(at.box, open)) return true;
         // In small boxes, much of the box around lies beyond the reach of balls.
         if (at.longest() > 4 * tolerance_) return false;
         cut_off(rounded, found.pieces);
@@ -136,6 +138,43 @@ private:
         return false;
     }
 
+    /// Returns true if all points of the box are within half the tolerance of one piece, and the overlap opens in the box.
+    bool is_along_piece(const Box3d& box, const OpenRequest& open) {
+        const std::vector<Point3d> corners = Polyhedron({box}, surface_.rounding()).corners();
+        for (const Piece& piece : open.pieces) {
+            double farthest = 0;  // the distance from a convex piece is greatest at a corner of the box
+            for (const Point3d& corner : corners) {
+                farthest = std::max(farthest, distance_of(corner, piece.polygon));
+                if (2 * farthest > tolerance_) break;
+            }
+            if (2 * farthest > tolerance_) continue;
+            const Plank whole{piece.normal, extent_along(piece.normal, {corners})};
+            if (!opens(open, box, {&whole, 1})) return false;
+            thickest_ = std::max(thickest_, 2 * farthest);
+            return true;
+        }
+        return false;
+    }
+
+    static double distance_of(const Point3d& point, const Polygon& polygon) {
+        double least = std::numeric_limits<double>::infinity();
+        const auto& corners = polygon.corners;
+        for (std::size_t i = 2; i < corners.size(); ++i) {
+            least = std::min(least, triangle_gap(point, {corners[0], corners[i - 1], corners[i]}));
+        }
+        return least;
+    }
+
+    static Point3d slopes_of(const std::vector<Piece>& pieces) {
+        Point3d slopes = {};
+        for (const Piece& piece : pieces) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                slopes[axis] = std::max(slopes[axis], std::abs(piece.normal[axis]));
+            }
+        }
+        return slopes;
+    }
+
     /// Updates found_ if a larger ball around the point lies in both solids.
     void test_ball(const Point3d& point) {
         if (!surface_.in_both(point)) return;
@@ -145,9 +184,14 @@ private:
         found_ = std::max(found_, 2 * radius - surface_.rounding());
     }
 
-    static void divide(const SearchBox& at, const NearLists& near, std::vector<SearchBox>& waiting) {
-        const std::size_t axis = at.longest_axis();
-        SearchBox low{at.box, near}, high{at.box, near};
+    /// Divides a box. Dividing along an axis helps only if some piece is not parallel to it.
+    static void divide(const SearchBox& at, const Surroundings& around, std::vector<SearchBox>& waiting) {
+        std::size_t axis = 0;
+        const auto use = [&](std::size_t i) { return at.length(i) * (around.slopes[i] + 1e-3); };
+        for (const std::size_t other : {std::size_t(1), std::size_t(2)}) {
+            if (use(other) > use(axis)) axis = other;
+        }
+        SearchBox low{at.box, around.near}, high{at.box, around.near};
         low.box.max[axis] = high.box.min[axis] = middle_of(at.box)[axis];
         waiting.push_back(std::move(low));
         waiting.push_back(std::move(high));
