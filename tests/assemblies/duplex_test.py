@@ -58,13 +58,9 @@ def main(program):
     wanted = {("noise", "penetrating"): 247, ("real", "penetrating"): 59, ("between", "penetrating"): 19}
     assert count(pairs, exact) == wanted, f"tolerance 0: {count(pairs, exact)}"
     # All pairs between noise and real have a ball thicker than the tolerance: floors that reach into doors, beams into walls.
-    # One noise pair is not proven: at an acute edge of a wall, lines leave an overlap of 0.2 um through the wall alone.
-    undecided = {pair for pair, row in rows.items() if row.get("thickness_kind") == "undecided"}
-    assert len(undecided) <= 1 and all(pairs[pair] == "noise" for pair in undecided), f"undecided: {undecided}"
-    decided = {pair: verdict for pair, verdict in pairs.items() if pair not in undecided}
-    wanted = {("noise", "touching"): 247 - len(undecided), ("real", "penetrating"): 59, ("between", "penetrating"): 19}
-    assert count(decided, rows) == wanted, f"tolerance {TOLERANCE}: {count(decided, rows)}"
-    for pair, verdict in decided.items():
+    wanted = {("noise", "touching"): 247, ("real", "penetrating"): 59, ("between", "penetrating"): 19}
+    assert count(pairs, rows) == wanted, f"tolerance {TOLERANCE}: {count(pairs, rows)}"
+    for pair, verdict in pairs.items():
         row = rows[pair]
         kind, thickness, limit = row["thickness_kind"], row["thickness"], float(TOLERANCE)
         right = kind == "at_most" and thickness <= limit if verdict == "noise" else kind == "at_least" and thickness > limit
