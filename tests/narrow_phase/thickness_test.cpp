@@ -10,6 +10,7 @@
 #include "narrow_phase/largest_ball.hpp"
 #include "narrow_phase/object_pair.hpp"
 #include "narrow_phase/solid_samples.hpp"
+#include "narrow_phase/thickness/polygon.hpp"
 #include "samples/meshes.hpp"
 #include "samples/random.hpp"
 #include "support/cases.hpp"
@@ -29,6 +30,11 @@ Finding judged(const shape::Any& a, const shape::Any& b, const Pose& pose, doubl
     const std::stop_token stop;
     find_contacts(posed_a, posed_b, {.max_contacts = 0, .stop = stop, .tolerance = most}, finding);
     return finding;
+}
+
+shape::Mesh posed(shape::Mesh mesh, const Pose& pose) {
+    for (Point3d& vertex : mesh.vertices) vertex = vector::posed(pose, vertex);
+    return mesh;
 }
 
 struct Overlap {
@@ -201,6 +207,30 @@ TEST(Thickness, WhatGoesThroughPenetratesInAnyForm) {
     }
 }
 
+/// Points on a few lines, most of them several times but for the last bits: as the corners of a polyhedron that planes cut.
+TEST(Thickness, PrismsHaveAllTheirPoints) {
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+        samples::RandomStream random(59, i);
+        const auto direction = direction_of({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        const Point3d u = vector::some_normal(*direction), v = vector::cross(*direction, u);
+        std::vector<Point3d> points;
+        for (std::uint64_t line = 0; line < 4; ++line) {
+            const Point3d from = {random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)},
+                          way = line % 2 == 0 ? u : vector::plus(u, v);
+            for (std::uint64_t k = 0; k < 3; ++k) {
+                const Point3d at = vector::plus(from, vector::times(way, random.uniform(-5, 5)));
+                for (std::uint64_t copy = 0; copy < 3; ++copy) {
+                    Point3d& point = points.emplace_back(at);
+                    for (double& coordinate : point) coordinate += random.uniform(-2e-15, 2e-15);
+                }
+            }
+        }
+        for (const CutPlane& plane : prism_over(points, *direction)) {
+            for (const Point3d& point : points) ASSERT_LE(plane.height(point), 1e-12) << i;
+        }
+    }
+}
+
 TEST(Thickness, BeyondTheRangeOfFloat32NothingIsProven) {
     const shape::Mesh cube = samples::box_mesh({0, 0, 0}, {1e39, 1e39, 1e39});
     EXPECT_EQ(judged(cube, moved(cube, {5e38, 5e38, 5e38}), {}, 1e38).collision_class, CollisionClass::penetrating);
@@ -252,11 +282,6 @@ TEST(Thickness, WallsThatRunIntoEachOther) {
     const shape::Mesh wall = samples::box_mesh({0, 0, 0}, {1000, 200, 3000});
     expect_class({"by 10", wall, samples::box_mesh({990, 0, 0}, {2000, 200, 3000})}, CollisionClass::penetrating);
     expect_class({"by 0.5", wall, samples::box_mesh({999.5, 0, 0}, {2000, 200, 3000})}, CollisionClass::touching);
-}
-
-shape::Mesh posed(shape::Mesh mesh, const Pose& pose) {
-    for (Point3d& vertex : mesh.vertices) vertex = vector::posed(pose, vertex);
-    return mesh;
 }
 
 /// Returns two solids that overlap, most of them by little.

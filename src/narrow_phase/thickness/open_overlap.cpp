@@ -18,44 +18,6 @@ constexpr int max_divisions = 6;    // of a region, into parts of parts
 constexpr int max_tests = 200;      // regions and directions that are tested for a box
 constexpr int max_approaches = 30;  // steps from the mean of normals to the nearest point of their hull
 
-/// Returns the planes of the prism along `direction` over points: its sides touch the convex hull of the points.
-std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point3d& direction) {
-    const auto u = direction_of(vector::some_normal(direction));
-    const Point3d v = vector::cross(direction, *u);
-    struct Flat {
-        double x, y;
-    };
-    std::vector<Flat> flat;
-    flat.reserve(points.size());
-    for (const Point3d& point : points) flat.push_back({vector::dot(*u, point), vector::dot(v, point)});
-    std::sort(flat.begin(), flat.end(),
-              [](const Flat& p, const Flat& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
-    // Andrew's monotone chain: the lower chain, then the upper one, counterclockwise.
-    std::vector<Flat> hull;
-    for (const bool upper : {false, true}) {
-        const std::size_t first = hull.size();
-        for (std::size_t i = 0; i < flat.size(); ++i) {
-            const Flat& next = flat[upper ? flat.size() - 1 - i : i];
-            while (hull.size() >= first + 2) {
-                const Flat &p = hull[hull.size() - 2], &q = hull.back();
-                if ((q.x - p.x) * (next.y - p.y) - (q.y - p.y) * (next.x - p.x) > 0) break;
-                hull.pop_back();
-            }
-            hull.push_back(next);
-        }
-        hull.pop_back();
-    }
-    std::vector<CutPlane> planes;
-    for (std::size_t i = 0; i < hull.size(); ++i) {
-        const Flat &p = hull[i], &q = hull[(i + 1) % hull.size()];
-        const double x = q.y - p.y, y = p.x - q.x, length = std::hypot(x, y);
-        if (!(length > 0)) continue;
-        const Point3d normal = vector::plus(vector::times(*u, x / length), vector::times(v, y / length));
-        planes.push_back({normal, (x * p.x + y * p.y) / length});
-    }
-    return planes;
-}
-
 /// Returns the part of a polygon below all planes; empty if it only touches one of them.
 Polygon part_within(const Polygon& polygon, std::span<const CutPlane> planes, double rounding) {
     const auto is_beyond = [&](const CutPlane& plane, const Polygon& part) {

@@ -1,6 +1,7 @@
 #include "narrow_phase/thickness/polygon.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace octopair {
@@ -93,6 +94,45 @@ Polygon cut_below(Polygon polygon, const CutPlane& plane, double rounding) {
     if (high <= plane.offset + rounding) return polygon;
     if (low >= plane.offset - rounding) return {};
     return part_below(polygon, [&](const Point3d& corner) { return plane.height(corner); });
+}
+
+std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point3d& direction) {
+    const auto u = direction_of(vector::some_normal(direction));
+    const Point3d v = vector::cross(direction, *u);
+    struct Flat {
+        double x, y;
+    };
+    std::vector<Flat> flat;
+    flat.reserve(points.size());
+    for (const Point3d& point : points) flat.push_back({vector::dot(*u, point), vector::dot(v, point)});
+    std::sort(flat.begin(), flat.end(),
+              [](const Flat& p, const Flat& q) { return p.x != q.x ? p.x < q.x : p.y < q.y; });
+    // Andrew's monotone chain: the lower chain, then the upper one, counterclockwise.
+    std::vector<Flat> hull;
+    for (const bool upper : {false, true}) {
+        const std::size_t first = hull.size();
+        for (std::size_t i = 0; i < flat.size(); ++i) {
+            const Flat& next = flat[upper ? flat.size() - 1 - i : i];
+            while (hull.size() >= first + 2) {
+                // Differences of neighbours: those of far points would lose the few bits by which nearly equal points differ, and a turn to
+                // the wrong side would cut off points.
+                const Flat &p = hull[hull.size() - 2], &q = hull.back();
+                if ((q.x - p.x) * (next.y - q.y) - (q.y - p.y) * (next.x - q.x) > 0) break;
+                hull.pop_back();
+            }
+            hull.push_back(next);
+        }
+        hull.pop_back();
+    }
+    std::vector<CutPlane> planes;
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+        const Flat &p = hull[i], &q = hull[(i + 1) % hull.size()];
+        const double x = q.y - p.y, y = p.x - q.x, length = std::hypot(x, y);
+        if (!(length > 0)) continue;
+        const Point3d normal = vector::plus(vector::times(*u, x / length), vector::times(v, y / length));
+        planes.push_back({normal, (x * p.x + y * p.y) / length});
+    }
+    return planes;
 }
 
 }  // namespace octopair

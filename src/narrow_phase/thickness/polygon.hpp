@@ -54,4 +54,8 @@ SplitPolygon split(const Polygon& polygon, const CutPlane& plane, double roundin
 /// Returns SplitPolygon::below alone.
 Polygon cut_below(Polygon polygon, const CutPlane& plane, double rounding);
 
+/// Returns the planes of the prism along `direction` over points: its sides touch the convex hull of the points. All points are below all
+/// planes, up to a few roundings of their coordinates. Requires: `direction` has length 1.
+std::vector<CutPlane> prism_over(const std::vector<Point3d>& points, const Point3d& direction);
+
 }  // namespace octopair
