@@ -207,6 +207,22 @@ TEST(Thickness, WhatGoesThroughPenetratesInAnyForm) {
     }
 }
 
+/// Lines from edge to edge leave through both solids there, also through the middle of the overlap.
+TEST(Thickness, SquareRodsThroughSheetsOfTheirThicknessPenetrate) {
+    const auto block = [](double x, double y, double z) {
+        return samples::box_mesh({-x / 2, -y / 2, -z / 2}, {x / 2, y / 2, z / 2});
+    };
+    for (const double width : {0.3, 0.5, 0.7}) {
+        const shape::Mesh sheet = block(20, 20, width);
+        const CollisionClass wanted = CollisionClass::penetrating;
+        expect_class({"rod", sheet, block(width, width, 20)}, wanted);
+        expect_class({"wider rod", sheet, block(1.02 * width, width, 20)}, wanted);
+        expect_class({"blade", sheet, block(width, 10, 20)}, wanted);
+        expect_class({"octagonal rod", sheet, prism(regular_outline(8, width / 2), -10, 10)}, wanted);
+        expect_class({"turned rod", sheet, prism(regular_outline(4, width / 2), -10, 10)}, wanted);
+    }
+}
+
 /// Points on a few lines, most of them several times but for the last bits: as the corners of a polyhedron that planes cut.
 TEST(Thickness, PrismsHaveAllTheirPoints) {
     for (std::uint64_t i = 0; i < 20000; ++i) {

@@ -57,20 +57,49 @@ private:
     /// Tests lines along the direction through the region, and along other directions. If none opens all of the region, tests its parts. The lines
     /// that failed are divided from the others; else the planes of pieces divide the region.
     bool opens_along_any(const Polyhedron& region, const Point3d& direction, int divisions) {
-        conflict_.clear();
-        if (is_outside(region) || opens(region, direction)) return true;
-        const std::vector<CutPlane> conflict = std::move(conflict_);
-        const auto mean = mean_normal(region);
-        if (mean && opens(region, *mean)) return true;
-        const std::vector<Point3d> normals = normals_around(region);
-        if (const auto common = common_way_out(normals); common && opens(region, *common)) return true;
-        if (const auto along = mean ? way_along(normals, *mean) : std::nullopt; along && opens(region, *along))
-            return true;
+        if (is_outside(region)) return true;
+        crossing_ = {};
+        if (opens(region, direction) && (is_near_face(direction) || !is_crossed_by_both(region))) return true;
+        const std::vector<CutPlane> conflict = std::move(crossing_.lines);
+        if (opens_obliquely(region)) return true;
         if (divisions == 0 || tests_ > max_tests) return false;
         auto parts = divided(region, conflict);
         if (!parts) parts = divided(region, planes_of_pieces(direction));
         return parts && opens_along_any((*parts)[0], direction, divisions - 1) &&
                opens_along_any((*parts)[1], direction, divisions - 1);
+    }
+
+    /// Tests lines along directions that need not be near the normal of a face.
+    bool opens_obliquely(const Polyhedron& region) {
+        const std::vector<Point3d> normals = normals_around(region);
+        const auto mean = mean_normal(region), along = mean ? way_along(normals, *mean) : std::nullopt;
+        for (const auto& direction : {mean, common_way_out(normals), along}) {
+            if (direction && opens(region, *direction)) return is_near_face(*direction) || !is_crossed_by_both(region);
+        }
+        return false;
+    }
+
+    bool is_near_face(const Point3d& direction) const {
+        return std::any_of(request_.pieces.begin(), request_.pieces.end(),
+                           [&](const Piece& piece) { return std::abs(vector::dot(piece.normal, direction)) > 0.9; });
+    }
+
+    /// Returns whether lines along the normal of one face enter and leave the overlap through a alone, and those along the normal of another face
+    /// through b alone. Then the solids go through each other, as a square rod goes through a sheet of its own thickness, though lines from
+    /// edge to edge leave through both.
+    bool is_crossed_by_both(const Polyhedron& region) {
+        std::array<bool, 2> crossed = {};
+        std::vector<Point3d> tested;
+        for (const Point3d& normal : normals_around(region)) {
+            const auto is_same = [&](const Point3d& other) { return std::abs(vector::dot(other, normal)) > 1 - 1e-4; };
+            if (std::any_of(tested.begin(), tested.end(), is_same)) continue;
+            tested.push_back(normal);
+            crossing_ = {};
+            if (opens(region, normal)) return false;
+            if (crossing_.side) crossed[*crossing_.side] = true;
+            if (tests_ > max_tests || (crossed[0] && crossed[1])) return true;
+        }
+        return false;
     }
 
     /// Returns whether the region has no part of the overlap: no piece, and no point in both solids.
@@ -231,7 +260,7 @@ private:
         const Polygon entrance = part_within(pair.below.polygon, sides, rounding_);
         if (is_shared(common, pair.above, pair.all, direction)) return false;
         if (!entrance.empty() && is_shared(entrance, pair.below, pair.all, direction)) return false;
-        conflict_ = std::move(sides);
+        crossing_ = {std::move(sides), pair.above.piece->side};
         return true;
     }
 
@@ -328,8 +357,12 @@ private:
     const OpenRequest& request_;
     double rounding_;
     std::vector<std::optional<int>> outward_;  // by piece: 1, -1, or 0 if the solid is on both sides or on none
-    /// Sides of the prism of lines that failed the last test, because they enter and leave through one solid alone; or empty.
-    std::vector<CutPlane> conflict_;
+    /// Lines that failed a test, because they enter and leave the overlap through one solid alone.
+    struct Crossing {
+        std::vector<CutPlane> lines;   // sides of their prism
+        std::optional<unsigned> side;  // of the solid
+    };
+    Crossing crossing_;  // the last one
     int tests_ = 0;
 };
 
