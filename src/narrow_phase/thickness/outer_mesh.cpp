@@ -86,7 +86,7 @@ OuterMesh around_disks(const ConvexSolid& solid, double error) {
     return {revolved(profile, sides), radius * (1 / std::cos(pi / sides) - 1)};
 }
 
-OuterMesh box_mesh(const Point3d& half) {
+OuterMesh mesh_of_box(const Point3d& half) {
     OuterMesh outer;
     for (unsigned i = 0; i < 8; ++i) {
         Point3d& corner = outer.mesh.vertices.emplace_back(half);
@@ -105,7 +105,7 @@ std::optional<OuterMesh> make_outer_mesh(const ConvexSolid& solid, double error)
     using Core = ConvexSolid::Core;
     switch (solid.core) {
         case Core::box:
-            return box_mesh(solid.extents);
+            return mesh_of_box(solid.extents);
         case Core::cylinder:
         case Core::cone:
             return around_disks(solid, error);
