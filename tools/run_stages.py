@@ -50,13 +50,14 @@ class Stage:
 
 EXACTNESS = ("octopair_exactness_test", "octopair_exactness_workers_test", "octopair_mpi_test")
 PYTHON = ("OCTOPAIR_WITH_PYTHON",)
+READERS = ("OCTOPAIR_WITH_IFC", "OCTOPAIR_WITH_STEP")
 # The packages and the wheel take the objects of this build (tests/packaging/release_objects.sh), and one check reads debug information.
 DEBUG = "-g -fno-var-tracking"
 STAGES = {
     # The package tests take longest, and mostly wait for each other, so they begin first.
     "packages": Stage("release", ("-L", "packages"), ("octopair_packaged",), compiled=DEBUG),
     "release": Stage("release", ("-L", "quick"), scenes=(2000, 8), share=100),
-    "slow": Stage("release", ("-L", "slow")),
+    "slow": Stage("release", ("-L", "slow"), options=READERS),
     "python": Stage("release", ("-L", "python"), options=PYTHON, compiled=DEBUG),
     "viewer": Stage("release", ("-L", "viewer"), options=PYTHON),
     "install": Stage("release", ("-L", "install")),
@@ -117,7 +118,7 @@ def build_options(stages):
     # All builds have the viewer, so that no stage compiles the program again. They also have the parts that scripts/run leaves out.
     parts = ("OCTOPAIR_BUILD_TESTS", "OCTOPAIR_WITH_VIEWER", "OCTOPAIR_WITH_SERVICE", "OCTOPAIR_WITH_MPI")
     return [*(f"-D{option}=ON" for option in parts),
-            *(f"-D{option}={'ON' if option in on else 'OFF'}" for option in ("OCTOPAIR_BUILD_BENCHMARKS", "OCTOPAIR_WITH_PYTHON")),
+            *(f"-D{option}={'ON' if option in on else 'OFF'}" for option in ("OCTOPAIR_BUILD_BENCHMARKS", *PYTHON, *READERS)),
             f"-DCMAKE_CXX_FLAGS={max(stage.compiled for stage in stages)}"]
 
 

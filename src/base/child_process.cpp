@@ -28,6 +28,7 @@ struct Start {
     const int* descriptors;
     int descriptor_count;
     bool keeps_stderr;
+    int output, errors;
     pid_t parent;
     int error;  // errno of the child
 };
@@ -58,10 +59,14 @@ OCTOPAIR_NOT_SANITIZED bool arrange_descriptors(const Start& start) {
     for (int i = 0; i < start.descriptor_count; ++i) {
         if (::dup2(copies[i], first_descriptor + i) < 0) return false;
     }
-    const bool keeps_stderr = start.keeps_stderr && ::fcntl(2, F_GETFD) >= 0;
+    const int output = start.output < 0 ? -1 : ::fcntl(start.output, F_DUPFD, behind);
+    const int errors = start.errors < 0 ? -1 : ::fcntl(start.errors, F_DUPFD, behind);
+    const bool keeps_stderr = errors < 0 && start.keeps_stderr && ::fcntl(2, F_GETFD) >= 0;
     for (int standard = 0; standard < (keeps_stderr ? 2 : 3); ++standard) {
         if (!open_nothing(standard)) return false;
     }
+    if (output >= 0 && ::dup2(output, 1) < 0) return false;
+    if (errors >= 0 && ::dup2(errors, 2) < 0) return false;
     close_from(behind);
     return true;
 }
@@ -95,6 +100,8 @@ pid_t start_child(const ChildProgram& program) {
                 program.descriptors.data(),
                 int(program.descriptors.size()),
                 program.keeps_stderr,
+                program.output,
+                program.errors,
                 ::getpid(),
                 0};
     // No handler of a signal must run in the child, which uses the memory of this process.

@@ -20,7 +20,8 @@ struct ChildProgram {
     std::span<char* const> arguments;  ///< begin with the name of the program, and end with a null pointer
     /// Descriptors that the program gets as 3, 4, ...; at most max_descriptors. Besides these, the program gets only 0, 1 and 2.
     std::span<const int> descriptors;
-    bool keeps_stderr = false;  ///< false: descriptor 2 is /dev/null, as descriptors 0 and 1 always are
+    bool keeps_stderr = false;     ///< false: descriptor 2 is /dev/null, as descriptors 0 and 1 are
+    int output = -1, errors = -1;  ///< descriptors that the program gets as 1 and 2; -1: as above
 };
 
 /// Starts a program in a process group of its own, with no signal blocked or ignored. The system kills it when the calling thread ends.

@@ -23,6 +23,7 @@
 #include "io/files/output_stream.hpp"
 #include "io/formats/format_table.hpp"
 #include "io/json/json_fields.hpp"
+#include "io/meshes/stream/reader_program.hpp"
 #include "octopair/error.hpp"
 #include "octopair/version.hpp"
 #include "octree/sweep/sweep.hpp"
@@ -69,6 +70,10 @@ std::string line_of(std::string_view name, std::string_view value) { return fmt:
 std::string format_text(const std::string& path) {
     const io::KnownFormat known = io::known_format(path);
     std::string name = known.format != nullptr ? std::string(known.format->name) : known.ending.substr(1);
+#ifdef OCTOPAIR_WITH_MESHES
+    const std::string_view program = io::reader_program_of(known.ending);
+    if (!program.empty() && io::find_reader_program(program)) return fmt::format("{}, read by {}", name, program);
+#endif
     const io::FormatReader reader = known.format != nullptr ? known.format->reader : io::FormatReader::assimp;
     switch (reader) {
         case io::FormatReader::octopair:
@@ -76,6 +81,7 @@ std::string format_text(const std::string& path) {
         case io::FormatReader::checked_assimp:
             return name + ", read by Assimp, checked by octopair";
         case io::FormatReader::assimp:
+        case io::FormatReader::program:
         case io::FormatReader::nobody:
             break;
     }

@@ -88,6 +88,9 @@ struct LoadedScene {
     /// Bound on the coordinates of meshes that the file or its reader rounded to float32; 0: no coordinates were rounded. The bound also
     /// covers coordinates before their transforms, in the unit of the world, and the translations of the transforms.
     double largest_rounded = 0;
+    /// Greatest distance of a curved surface from the triangles that stand for it, or of a vertex from where it was before it was rounded, as
+    /// far as the reader knows; 0: not known, or none.
+    double chord = 0;
     std::vector<std::string> names;  ///< empty, or one name per object; an object without a name has an empty one
     ObjectDetails details;           ///< empty, or a row per object
     ObjectRelations relations;       ///< empty, or an element per object; empty for triangles

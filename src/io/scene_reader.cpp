@@ -13,6 +13,8 @@
 #include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
+#include "io/meshes/stream/model_stream.hpp"
+#include "io/meshes/stream/reader_program.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 
 namespace octopair::io {
@@ -121,6 +123,7 @@ LoadedScene read_known(const std::string& path, const SceneContent& content, con
             return read_shapes(path, content, stop);
         case SceneFormat::mesh:
 #ifdef OCTOPAIR_WITH_MESHES
+            if (format_ending(path) == ".opmodel") return read_model_stream_file(path, content, stop);
             if (is_plain_ending(format_ending(path))) return read_plain_scene(path, content, stop);
             if (is_gltf_ending(format_ending(path))) {
                 if (auto scene = read_gltf_scene(path, content, stop)) return std::move(*scene);
@@ -143,7 +146,12 @@ LoadedScene read_known(const std::string& path, const SceneContent& content, con
 }  // namespace
 
 LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
-    check_readable(path);
+    if (content.reader.command.empty()) check_readable(path);
+#ifdef OCTOPAIR_WITH_MESHES
+    if (auto arguments = reader_arguments(path, content.reader)) {
+        return read_by_program(path, std::move(*arguments), content, stop);
+    }
+#endif
     LoadedScene scene = read_known(path, content, stop);
     if (std::string warning = name_warning(path); !warning.empty()) scene.warnings.push_back(std::move(warning));
     return scene;
@@ -167,6 +175,7 @@ LoadedScene join_scenes(std::span<LoadedScene> scenes, std::span<const std::stri
     joined.moving = scenes.front().moving;
     for (const LoadedScene& scene : scenes) {
         joined.largest_rounded = std::max(joined.largest_rounded, scene.largest_rounded);
+        joined.chord = std::max(joined.chord, scene.chord);
         joined.warnings.insert(joined.warnings.end(), scene.warnings.begin(), scene.warnings.end());
         joined.elements.add(scene.elements);
         joined.not_read.insert(joined.not_read.end(), scene.not_read.begin(), scene.not_read.end());

@@ -9,6 +9,7 @@
 
 #include "io/boxes/npy.hpp"
 #include "io/loaded_scene.hpp"
+#include "io/meshes/stream/reader_choice.hpp"
 
 namespace octopair::io {
 
@@ -23,6 +24,7 @@ struct SceneContent {
     std::function<void(double)> progress = {};
     /// Unit of the world. The coordinates of a file that states another unit are converted. Empty: the unit is that of the file.
     std::string unit = {};
+    ReaderChoice reader = {};  ///< program that reads the files
 };
 
 /// Reads a scene file. Throws: Error{bad_input, io_failed, resource_limit, cancelled} that begins with the file.

@@ -88,7 +88,8 @@ TEST_F(Formats, EachEndingHasOneFormat) {
     std::set<std::string_view> names;
     for (const io::FileFormat& format : io::file_formats()) {
         EXPECT_TRUE(names.insert(format.name).second) << format.name;
-        EXPECT_EQ(format.remedy.empty(), format.reader != io::FormatReader::nobody) << format.name;
+        const bool without = format.reader == io::FormatReader::nobody || format.reader == io::FormatReader::program;
+        EXPECT_EQ(format.remedy.empty(), !without) << format.name;
         if (!format.endings.empty()) {
             EXPECT_EQ(io::format_with_ending(format.first_ending()), &format);
         }
@@ -306,10 +307,10 @@ TEST_F(Formats, SomeFormatsAreWrappedThemselves) {
 }
 
 TEST_F(Formats, FormatsThatNobodyReadsHaveARemedy) {
-    const std::string cad = "export it as glTF, OBJ or STL from a CAD program, for example FreeCAD";
+    const std::string cad = "install octopair-step, or export it as glTF, OBJ or STL from a CAD program";
     for (const std::string name : {"a.step", "a.stp", "a.obj", "a"})
-        EXPECT_EQ(refusal(name, step_content), "is STEP, which octopair does not read; " + cad) << name;
-    EXPECT_EQ(refusal("a.igs", "x"), "is IGES, which octopair does not read; " + cad);
+        EXPECT_EQ(refusal(name, step_content), "is STEP, which another program must read; " + cad) << name;
+    EXPECT_EQ(refusal("a.igs", "x"), "is IGES, which another program must read; " + cad);
     EXPECT_EQ(refusal("a.wrl", "#VRML V2.0 utf8\n"),
               "is VRML, which octopair does not read; convert it to X3D or glTF, for example with Blender");
     EXPECT_EQ(refusal("a.dxf", "AutoCAD Binary DXF\r\n\x1a"),

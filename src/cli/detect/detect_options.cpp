@@ -31,6 +31,19 @@ void add_objects_option(Command& command, DetectRequest& request) {
         .type_name("WHAT");
 }
 
+#ifdef OCTOPAIR_WITH_MESHES
+void add_reader_options(Command& command, DetectRequest& request) {
+    command
+        .add_option("--reader", request.reader.command,
+                    "program that reads the inputs and writes a model stream; it gets the name of a file")
+        .type_name("COMMAND");
+    command
+        .add_option("--include-type", request.reader.include_types,
+                    "IFC: also read elements of this type, for example IfcSpace; may be repeated")
+        .type_name("TYPE");
+}
+#endif
+
 void add_margin_option(Command& command, DetectRequest& request) {
     command
         .add_option(
@@ -47,6 +60,9 @@ void add_scene_options(Command& command, DetectRequest& request, const std::stri
     command.add_option("--against", request.against, "only pairs of an object of INPUT and an object of FILE")
         .type_name("FILE");
     add_objects_option(command, request);
+#ifdef OCTOPAIR_WITH_MESHES
+    add_reader_options(command, request);
+#endif
     command.begin_section("What counts");
     add_margin_option(command, request);
     command.add_option("--padding", request.padding, "clearance of each object: an array of shape (n,)")
@@ -67,6 +83,14 @@ void add_order_options(Command& command, DetectRequest& request, const std::stri
         .add_option(
             "--limit", [&request](const std::string& text) { request.limit = parse_count("--limit", text); }, limited)
         .type_name("N");
+}
+
+io::ReaderChoice reader_of(const DetectRequest& request) {
+    io::ReaderChoice reader = request.reader;
+#ifdef OCTOPAIR_WITH_PIPELINE
+    reader.chord = request.pipeline.chord.value_or(0);
+#endif
+    return reader;
 }
 
 Option add_output_option(Command& command, std::string& output, const char* formats) {

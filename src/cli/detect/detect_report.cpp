@@ -193,10 +193,10 @@ std::string pairs_text(std::uint64_t pairs) { return fmt::format("{} pair{}", gr
 std::string tolerance_source(const DetectReport& report) {
     if (!report.tolerance_is_default) return {};
     constexpr std::string_view precision = "the precision of float32";
-    const double of_chord = 2 * report.chord.value_or(0);
+    const double of_chord = 2 * report.chord;
     if (of_chord == 0) return fmt::format(" ({})", precision);
     const bool both = *report.tolerance > of_chord;
-    return fmt::format(" (twice the chord error {:.3g}{}{})", *report.chord, both ? ", and " : "",
+    return fmt::format(" (twice the chord error {:.3g}{}{})", report.chord, both ? ", and " : "",
                        both ? precision : "");
 }
 

@@ -47,8 +47,8 @@ struct DetectReport {
     std::array<std::uint64_t, collision_classes> of_class = {};  ///< collisions by class, of all frames, if known
     std::optional<double> tolerance;                             ///< tolerance of the exact stages, as a length
     bool tolerance_is_default =
-        false;  ///< true: the tolerance follows from the chord error and the error of rounding to float32
-    std::optional<double> chord = {};          ///< chord error of --chord
+        false;         ///< true: the tolerance follows from the chord error and the error of rounding to float32
+    double chord = 0;  ///< chord error of --chord, or of the readers; 0: none
     std::uint64_t open_objects = 0;            ///< objects whose geometry is not closed
     std::vector<std::string> first_open;       ///< names of the first open objects
     std::string unit;                          ///< unit of all lengths; empty if no input states one

@@ -97,7 +97,7 @@ private:
         if (stage_of(request_) == Stage::features) {
             report_.tolerance = tolerance_of(request_, sets());
             report_.tolerance_is_default = !request_.pipeline.tolerance && *report_.tolerance > 0;
-            report_.chord = request_.pipeline.chord;
+            report_.chord = chord_of(request_, sets());
         }
         if (stage_of(request_) == Stage::pairs) return;
         constexpr std::size_t named = 3;

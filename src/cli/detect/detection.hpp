@@ -22,6 +22,7 @@ struct DetectRequest {
     std::vector<std::string> inputs;
     std::string against;  ///< empty: pairs within the inputs
     io::MeshObjects mesh_objects = io::MeshObjects::node;
+    io::ReaderChoice reader = {};
     std::string padding;  ///< a file, or empty
     std::string output;   ///< a file, or empty for standard output
     double margin = 0;
@@ -38,6 +39,9 @@ struct DetectRequest {
     bool quiet = false;
     std::vector<GivenOption> given;  ///< all given options as texts; the ranks compare them with each other
 };
+
+/// Returns the reader of the inputs, with the chord error of --chord.
+io::ReaderChoice reader_of(const DetectRequest& request);
 
 /// Finds the pairs of a request, on the processes of a group, and writes them.
 /// Collective. Throws: Error, the same on all ranks.

@@ -42,12 +42,16 @@ public:
 private:
     void open_inputs() {
         progress_.show("reading", 0);
-        inputs_.emplace(request_.inputs, io::SceneContent{request_.mesh_objects}, stop_);
+        inputs_.emplace(request_.inputs,
+                        io::SceneContent{.objects = request_.mesh_objects, .reader = reader_of(request_)}, stop_);
         io::FrameCount frames = inputs_->frames();
         SetSizes sizes{inputs_->objects(), 0};
         if (!request_.against.empty()) {
-            against_.emplace(std::vector{request_.against},
-                             io::SceneContent{.objects = request_.mesh_objects, .unit = inputs_->unit()}, stop_);
+            against_.emplace(
+                std::vector{request_.against},
+                io::SceneContent{
+                    .objects = request_.mesh_objects, .unit = inputs_->unit(), .reader = reader_of(request_)},
+                stop_);
             frames = joint_frames(frames, against_->frames(), request_);
             sizes.against = against_->objects();
         }

@@ -185,6 +185,7 @@ void add_report_options(Command& command, PipelineRequest& request) {
 }
 
 std::optional<std::string> input_of_boxes(const DetectRequest& request) {
+    if (!request.reader.command.empty()) return std::nullopt;
     for (const std::string& input : all_inputs(request)) {
         const io::SceneFormat format = io::scene_format(input);
         if (format == io::SceneFormat::npy || format == io::SceneFormat::csv) return input;
@@ -197,13 +198,22 @@ Stage stage_of(const DetectRequest& request) {
     return with_pipeline && !request.events && !input_of_boxes(request) ? Stage::objects : Stage::pairs;
 }
 
+double chord_of(const DetectRequest& request, const SetPair& sets) {
+    if (request.pipeline.chord) return *request.pipeline.chord;
+    double chord = 0;
+    for (const InputSet* set : {&sets.first, sets.second}) {
+        if (set != nullptr) chord = std::max(chord, set->scene.chord);
+    }
+    return chord;
+}
+
 double default_tolerance_of(const DetectRequest& request, const SetPair& sets) {
     double largest = 0;
     for (const InputSet* set : {&sets.first, sets.second}) {
         if (set != nullptr) largest = std::max(largest, set->scene.largest_rounded);
     }
     constexpr double relative_step = 0x1p-23;
-    return 2 * request.pipeline.chord.value_or(0) + 2 * largest * relative_step;
+    return 2 * chord_of(request, sets) + 2 * largest * relative_step;
 }
 
 double tolerance_of(const DetectRequest& request, const SetPair& sets) {

@@ -118,10 +118,13 @@ void read_slices(DetectRun& run, const Cluster& cluster) {
     const DetectRequest& request = run.request;
     const SliceRequest slice{own_slice(cluster), cluster.first()};
     InputSet &first = run.inputs.first, &second = run.inputs.second;
-    first = read_input_slice(request.inputs, {request.mesh_objects}, slice, run.stop);
+    first = read_input_slice(request.inputs, {.objects = request.mesh_objects, .reader = reader_of(request)}, slice,
+                             run.stop);
     if (run.join()) {
-        second = read_input_slice({request.against}, {.objects = request.mesh_objects, .unit = first.scene.space.unit},
-                                  slice, run.stop);
+        second = read_input_slice(
+            {request.against},
+            {.objects = request.mesh_objects, .unit = first.scene.space.unit, .reader = reader_of(request)}, slice,
+            run.stop);
     }
     run.inputs.frames =
         joint_frames({first.scene.frames, first.scene.moving}, {second.scene.frames, second.scene.moving}, request);

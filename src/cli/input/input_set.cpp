@@ -63,6 +63,7 @@ namespace {
 
 io::LoadedScene read_part(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
     // Most mesh files need an importer, which may crash. JSON scenes may name mesh files.
+    if (!content.reader.command.empty()) return io::read_scene(path, content, stop);
     const bool isolated = io::is_imported_file(path) || io::is_json_file(path);
     return isolated ? read_isolated(path, content, stop) : io::read_scene(path, content, stop);
 }
@@ -71,7 +72,7 @@ Part part_of(const std::string& path, const io::LoadedScene& scene) {
     const bool converted = !scene.converted_from.empty();
     return {path,
             scene.objects,
-            io::is_mesh_file(path) || io::is_json_file(path),
+            scene.shapes || io::is_mesh_file(path) || io::is_json_file(path),
             converted ? scene.converted_from : scene.space.unit,
             scene.converted_from,
             scene.project,

@@ -17,9 +17,10 @@ concept Some = std::same_as<std::remove_const_t<Any>, T>;
 // The members of each class that is sent member by member. Sender and receiver use the same list.
 
 auto members(Some<io::LoadedScene> auto& scene) {
-    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.largest_rounded, scene.names,
-                    scene.details, scene.relations, scene.project, scene.root, scene.space, scene.converted_from,
-                    scene.warnings, scene.not_read, scene.elements, scene.shapes, scene.triangles);
+    return std::tie(scene.boxes, scene.objects, scene.frames, scene.moving, scene.largest_rounded, scene.chord,
+                    scene.names, scene.details, scene.relations, scene.project, scene.root, scene.space,
+                    scene.converted_from, scene.warnings, scene.not_read, scene.elements, scene.shapes,
+                    scene.triangles);
 }
 auto members(Some<io::ElementCounts> auto& elements) {
     return std::tie(elements.with_geometry, elements.read, elements.lost, elements.left_out);

@@ -38,7 +38,8 @@ Paddings::Paddings(const DetectRequest& request, const SetSizes& sizes, const st
 void WholeInputs::read(const DetectRequest& request, ProgressLine& progress, const std::stop_token& stop) {
     io::SceneContent content{.objects = request.mesh_objects,
                              .shapes = has_filters(request),
-                             .progress = [&progress](double done) { progress.show("reading", done); }};
+                             .progress = [&progress](double done) { progress.show("reading", done); },
+                             .reader = reader_of(request)};
     first = read_input_set(request.inputs, content, stop);
     content.unit = first.scene.space.unit;
     if (!request.against.empty()) second = read_input_set({request.against}, content, stop);

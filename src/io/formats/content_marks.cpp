@@ -25,6 +25,7 @@ struct Mark {
 
 constexpr auto binary_marks = std::to_array<Mark>({
     {0, "\x93NUMPY"sv, ".npy"},
+    {0, "OPMODEL\n"sv, ".opmodel"},
     {0, "glTF\x01\0\0\0"sv, ".glb"},
     {0, "glTF\x02\0\0\0"sv, ".glb"},
     {8, "LWO2"sv, ".lwo"},

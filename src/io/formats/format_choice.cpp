@@ -21,6 +21,7 @@
 #include "io/formats/format_table.hpp"
 #include "io/meshes/assimp/mesh_reader.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
+#include "io/meshes/stream/reader_program.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 #include "octopair/error.hpp"
 
@@ -172,6 +173,19 @@ std::string binary_version(std::string_view bytes, std::string_view ending) {
 
 }  // namespace
 
+namespace {
+
+bool has_reader_program([[maybe_unused]] std::string_view ending) {
+#ifdef OCTOPAIR_WITH_MESHES
+    const std::string_view name = reader_program_of(ending);
+    return !name.empty() && find_reader_program(name).has_value();
+#else
+    return false;
+#endif
+}
+
+}  // namespace
+
 KnownFormat known_format(const std::string& path) { return known_by_head(path, head_of(path)); }
 
 void check_readable(const std::string& path) {
@@ -181,11 +195,17 @@ void check_readable(const std::string& path) {
     if (!head) return;
     const KnownFormat known = known_by_head(path, head);
     if (head->size == 0 && known.ending != ".csv") refuse(path, "is empty");
+    if (ending_of(path) == ".ifczip" && has_reader_program(".ifczip")) return;  // its reader expects an archive
     refuse_wrapped(path, *head);
     refuse_without_mark(path, known.ending, *head);
-    if (known.format == nullptr || known.format->reader != FormatReader::nobody) return;
+    if (known.format == nullptr) return;
+    const bool by_program = known.format->reader == FormatReader::program;
+    if (has_reader_program(known.ending)) return;
+    if (!by_program && known.format->reader != FormatReader::nobody) return;
     if (!known.marked && can_assimp_read(known.ending)) return;
-    refuse(path, fmt::format("is {}, which octopair does not read; {}", known.format->name, known.format->remedy));
+    refuse(path,
+           fmt::format("is {}, which {}; {}", known.format->name,
+                       by_program ? "another program must read" : "octopair does not read", known.format->remedy));
 }
 
 void check_not_wrapped(const std::string& path) {
@@ -206,6 +226,8 @@ SceneFormat scene_format(const std::string& path) {
     if (known.ending == ".csv") return SceneFormat::csv;
     if (known.ending == ".json") return SceneFormat::json;
 #ifdef OCTOPAIR_WITH_MESHES
+    if (known.ending == ".opmodel" || (known.format != nullptr && known.format->reader == FormatReader::program))
+        return SceneFormat::mesh;
     const bool refused = known.format != nullptr && known.format->reader == FormatReader::nobody;
     if (known.format != nullptr && !refused) return SceneFormat::mesh;
     if (!(refused && known.marked) && can_assimp_read(known.ending)) return SceneFormat::mesh;
@@ -219,6 +241,7 @@ bool is_imported_file(const std::string& path) {
 #ifdef OCTOPAIR_WITH_MESHES
     if (is_gltf_ending(known.ending)) return may_be_gltf_for_assimp(path);
 #endif
+    if (has_reader_program(known.ending)) return false;
     return known.format == nullptr || known.format->reader != FormatReader::octopair;
 }
 

@@ -16,11 +16,16 @@ constexpr FileFormat imported(std::string_view name, std::string_view endings, A
     return {name, endings, FormatReader::assimp, axes, {}};
 }
 
+constexpr FileFormat by_program(std::string_view name, std::string_view endings, std::string_view remedy) {
+    return {name, endings, FormatReader::program, AxisChange::none, remedy};
+}
+
 constexpr FileFormat refused(std::string_view name, std::string_view endings, std::string_view remedy) {
     return {name, endings, FormatReader::nobody, AxisChange::none, remedy};
 }
 
-constexpr std::string_view from_cad = "export it as glTF, OBJ or STL from a CAD program, for example FreeCAD",
+constexpr std::string_view by_step = "install octopair-step, or export it as glTF, OBJ or STL from a CAD program",
+                           from_cad = "export it as glTF, OBJ or STL from a CAD program, for example FreeCAD",
                            from_its_program = "export it as glTF, OBJ or STL from the program that wrote it",
                            from_scene = "convert it to glTF, for example with Blender",
                            from_points = "octopair needs surfaces or boxes; save boxes or spheres as .npy or .csv",
@@ -38,6 +43,7 @@ constexpr auto formats = std::to_array<FileFormat>({
     own("glTF", ".gltf"),
     own("binary glTF", ".glb"),
     own("3MF", ".3mf"),
+    own("model stream", ".opmodel"),
     {"IFC", ".ifc .ifczip", FormatReader::checked_assimp, AxisChange::turned, {}},
     imported("3D GameStudio terrain", ".hmp"),
     imported("3DS", ".3ds .prj", AxisChange::turned),
@@ -88,7 +94,7 @@ constexpr auto formats = std::to_array<FileFormat>({
     refused("E57", ".e57", from_points),
     refused("FreeCAD", ".fcstd", from_its_program),
     refused("ifcXML", ".ifcxml", "export it as IFC2x3 in STEP form (.ifc), or as glTF or OBJ"),
-    refused("IGES", ".igs .iges", from_cad),
+    by_program("IGES", ".igs .iges", by_step),
     refused("Inventor", ".ipt .iam", from_its_program),
     refused("JPEG", ".jpg .jpeg", no_model),
     refused("JT", ".jt", from_cad),
@@ -103,7 +109,7 @@ constexpr auto formats = std::to_array<FileFormat>({
     refused("Parasolid", ".x_t .x_b .xmt_txt", from_cad),
     refused("Revit", ".rvt .rfa", "export it as IFC2x3, glTF or OBJ"),
     refused("Rhino", ".3dm", from_its_program),
-    refused("STEP", ".step .stp .p21", from_cad),
+    by_program("STEP", ".step .stp .p21", by_step),
     refused("SketchUp", ".skp", from_its_program),
     refused("SolidWorks", ".sldprt .sldasm", from_its_program),
     refused("USD", ".usd .usda .usdc .usdz", from_scene),

@@ -14,6 +14,7 @@ enum class FormatReader : std::uint8_t {
     octopair,        ///< a reader of octopair
     checked_assimp,  ///< Assimp; octopair compares the result with the file
     assimp,          ///< Assimp; octopair does not check the result, and warns about this
+    program,         ///< an optional program; without it, files are refused (meshes/stream/reader_program.hpp)
     nobody,          ///< files are refused; FileFormat::remedy says what to do
 };
 
@@ -30,7 +31,7 @@ struct FileFormat {
     std::string_view endings;
     FormatReader reader;
     AxisChange axes;
-    std::string_view remedy;  ///< for formats that nobody reads: what to do
+    std::string_view remedy;  ///< for formats that nobody or a program reads: what to do without it
 
     /// Returns the first ending; empty if no ending is known.
     std::string_view first_ending() const { return endings.substr(0, endings.find(' ')); }

@@ -1,0 +1,114 @@
+#!/usr/bin/env node
+// octopair-ifc: reads IFC2x3, IFC4 and IFC4x3 (.ifc, .ifczip) by web-ifc, and writes a model stream.
+//
+//     octopair-ifc [--include-type TYPE]... FILE
+import {readFileSync} from 'node:fs';
+import {inflateRawSync} from 'node:zlib';
+
+import * as ifc from 'web-ifc';
+
+import {Relations} from './relations.mjs';
+import {Shapes} from './shapes.mjs';
+import {StreamWriter} from './stream_writer.mjs';
+
+// What has a shape but is no solid thing.
+const leftOut = new Set(['IfcSpace', 'IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcVirtualElement', 'IfcAnnotation', 'IfcGrid',
+  'IfcSpatialZone', 'IfcSite', 'IfcBuilding', 'IfcBuildingStorey', 'IfcProject', 'IfcExternalSpatialElement', 'IfcPositioningElement',
+  'IfcAlignment', 'IfcReferent', 'IfcPort', 'IfcDistributionPort', 'IfcStructuralCurveMember', 'IfcStructuralSurfaceMember',
+  'IfcStructuralPointConnection', 'IfcStructuralCurveConnection', 'IfcStructuralPointAction', 'IfcStructuralCurveAction',
+  'IfcStructuralSurfaceAction', 'IfcStructuralPointReaction']);
+
+function parseArguments(words) {
+  const wanted = {types: new Set(), file: null};
+  for (let i = 0; i < words.length; ++i) {
+    if (words[i] === '--include-type') wanted.types.add(words[++i]);
+    else if (wanted.file === null) wanted.file = words[i];
+    else throw new Error(`one file, not also ${words[i]}`);
+  }
+  if (wanted.file === null) throw new Error('octopair-ifc [--include-type TYPE]... FILE');
+  return wanted;
+}
+
+// The IFC text in an archive: its only file with the ending .ifc.
+function unzip(bytes) {
+  const end = bytes.lastIndexOf(Buffer.from('PK\x05\x06', 'latin1'));
+  if (end < 0) throw new Error('the archive has no directory: it is cut');
+  let at = bytes.readUInt32LE(end + 16);
+  for (let left = bytes.readUInt16LE(end + 10); left > 0; --left) {
+    const name = bytes.toString('utf8', at + 46, at + 46 + bytes.readUInt16LE(at + 28));
+    if (name.toLowerCase().endsWith('.ifc')) {
+      const start = bytes.readUInt32LE(at + 42);
+      const data = start + 30 + bytes.readUInt16LE(start + 26) + bytes.readUInt16LE(start + 28);
+      const packed = bytes.subarray(data, data + bytes.readUInt32LE(at + 20));
+      return bytes.readUInt16LE(at + 10) === 0 ? packed : inflateRawSync(packed);
+    }
+    at += 46 + bytes.readUInt16LE(at + 28) + bytes.readUInt16LE(at + 30) + bytes.readUInt16LE(at + 32);
+  }
+  throw new Error('the archive has no .ifc file');
+}
+
+function readText(file) {
+  const bytes = readFileSync(file);
+  return bytes.length > 4 && bytes.toString('latin1', 0, 4) === 'PK\x03\x04' ? unzip(bytes) : bytes;
+}
+
+// Bodies, not axes, footprints or boxes, are what collides.
+const noBodies = new Set(['Axis', 'FootPrint', 'Box', 'Annotation', 'Profile', 'CoG', 'Reference', 'Plan', 'Clearance', 'Lighting']);
+
+function hasBody(relations, product) {
+  const representation = product.Representation?.value;
+  const parts = representation === undefined ? [] : relations.line(representation)?.Representations ?? [];
+  return parts.some(part => !noBodies.has(relations.text(part.value, 'RepresentationIdentifier')));
+}
+
+class Counts {
+  constructor() {
+    this.byType = new Map();
+  }
+  add(type, first = '') {
+    if (!this.byType.has(type)) this.byType.set(type, {type, count: 0, first});
+    this.byType.get(type).count++;
+  }
+  list() {
+    return [...this.byType.values()];
+  }
+}
+
+async function main(words) {
+  const {types, file} = parseArguments(words);
+  const writer = new StreamWriter();
+  const text = readText(file);
+  if (!text.subarray(Math.max(0, text.length - 4096)).toString('latin1').includes('END-ISO-10303-21'))
+    return writer.failure('is cut: an IFC file ends with END-ISO-10303-21;');
+  const api = new ifc.IfcAPI();
+  await api.Init();
+  api.SetLogLevel(ifc.LogLevel.LOG_LEVEL_OFF);
+  const model = api.OpenModel(text, {COORDINATE_TO_ORIGIN: false, CIRCLE_SEGMENTS: 24});
+  if (model < 0 || !api.GetModelSchema(model)) return writer.failure('has a schema that web-ifc does not read; it reads IFC2x3, IFC4 and IFC4x3');
+  const relations = new Relations(api, model);
+  const projects = api.GetLineIDsWithType(model, ifc.IFCPROJECT, true);
+  writer.model({unit: 'm', up: 'z', project: projects.size() > 0 ? relations.globalId(projects.get(0)) : ''});
+
+  const shapes = new Shapes(api, model, writer);
+  const lost = new Counts(), out = new Counts();
+  let withGeometry = 0, read = 0;
+  relations.all(ifc.IFCPRODUCT, product => {
+    if (!hasBody(relations, product)) return;
+    const id = product.expressID;
+    const type = relations.typeName(id);
+    if (leftOut.has(type) && !types.has(type)) return out.add(type.toUpperCase());
+    const described = relations.describe(id);
+    writer.element(`${type} ${described.id} ('${described.label}')`);
+    ++withGeometry;
+    const placed = shapes.of(id);
+    if (!placed) return lost.add(type.toUpperCase(), `${described.id} ('${described.label}')`);
+    ++read;
+    writer.instance({...described, ...placed});
+  });
+  writer.end({withGeometry, read, lost: lost.list(), leftOut: out.list()});
+}
+
+main(process.argv.slice(2)).catch(error => {
+  console.error(String(error?.message ?? error));
+  process.exit(1);
+});

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""Tests octopair-ifc and octopair-step through octopair.
+
+    readers_test.py PROGRAM READERS     PROGRAM: octopair; READERS: the folder of the readers
+
+IFC files are written by ifc_writer.py, which states their coordinates. as1_pe_203.stp.xz and floors_2x3.ifc.xz are models of others (README.md).
+"""
+import csv
+import json
+import lzma
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+from ifc_writer import IfcWriter
+
+HERE = pathlib.Path(__file__).resolve().parent
+PROGRAM, READERS = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+TRIANGLES = [triangle for a, b, c, d in FACES for triangle in ((a, b, c), (a, c, d))]
+
+
+def cube(low, size):
+    return [tuple(a + size * b for a, b in zip(low, corner)) for corner in CUBE]
+
+
+def house(schema):
+    """A wall of 4 x 0.2 x 3 m with a door in its opening, two beams that share a shape, a column, a plinth and a space; in millimetres."""
+    file = IfcWriter(schema)
+    newer = schema != "IFC2X3"
+    last = "$,$" if newer else "$"
+    wall = file.element("IFCWALL", "Wall", file.represent([file.block((0, 0, 0), (4000, 200, 3000))]), last, "W" * 22)
+    hole = file.element("IFCOPENINGELEMENT", "Hole", file.represent([file.block((1000, -50, 0), (2000, 250, 2000))]), last, contained=False)
+    door = file.element("IFCDOOR", "Door", file.represent([file.block((1000, 50, 0), (2000, 100, 2000))]),
+                        "$,$,$,$,$,$" if newer else "$,$,$", "D" * 22)
+    file.add(f"IFCRELVOIDSELEMENT({file.root('')},$,{wall},{hole})")
+    file.add(f"IFCRELFILLSELEMENT({file.root('')},$,{hole},{door})")
+    beam = file.mapped(file.block((0, 0, 0), (100, 4000, 200)))
+    for k in (0, 1):
+        file.element("IFCBEAM", f"Beam {k}", beam((5000 + 1000 * k, 0, 2500)), last)
+    corners = cube((8000, 0, 0), 500)
+    column = file.triangles(corners, TRIANGLES) if newer else file.brep(corners, FACES)
+    file.element("IFCCOLUMN", "B\\X2\\00FC\\X0\\ro", file.represent([column], "Tessellation" if newer else "Brep"), last)
+    cut = file.difference(file.block((10000, 0, 0), (12000, 1000, 500)), file.block((10500, -10, 100), (11500, 1010, 600)))
+    file.element("IFCFOOTING", "Plinth", file.represent([cut], "CSG"), "$,.NOTDEFINED.")
+    file.element("IFCSPACE", "Room", file.represent([file.block((0, 200, 0), (4000, 4000, 3000))]),
+                 "$,.ELEMENT.,.INTERNAL.,$" if not newer else "$,.ELEMENT.,.INTERNAL.,$", contained=False)
+    return file.text()
+
+
+class Readers(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def run_program(self, *words, readers=READERS, status=0, environment=None):
+        path = f"{readers}:{os.environ['PATH']}" if readers else os.environ["PATH"]
+        ended = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=False, cwd=self.folder,
+                               env={**os.environ, "PATH": path, **(environment or {})})
+        self.assertEqual(ended.returncode, status, ended.stderr)
+        return ended
+
+    def info(self, name, *words):
+        """Returns what `octopair info` says, by the names of its lines."""
+        text = self.run_program("info", name, *words).stdout
+        return dict(re.match(r"(\S+(?: \S+)*)  +(.*)", line).groups() for line in text.splitlines() if "  " in line)
+
+    def rows(self, name, *words):
+        self.run_program("detect", name, "--stage", "features", "--quiet", *words, "--output", "found.csv")
+        with open(self.folder / "found.csv", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+
+    def test_schemas(self):
+        for schema in ("IFC2X3", "IFC4", "IFC4X3_ADD2"):
+            with self.subTest(schema):
+                self.write("house.ifc", house(schema))
+                facts = self.info("house.ifc")
+                self.assertEqual(facts["format"], "IFC, read by octopair-ifc")
+                self.assertEqual((facts["unit"], facts["axes"]), ("m", "z is up"))
+                self.assertEqual(facts["elements"], "6 of 6 with geometry were read")
+                self.assertEqual(facts["open meshes"], "0")
+                bounds = [round(float(word), 12) for word in facts["bounds"].split() if word != "to"]
+                self.assertEqual(bounds, [0, 0, 0, 12, 4, 3])
+                self.assertIn("IFCSPACE (1)", facts["not read"])
+                # The door is snug in its opening: it touches the wall at both sides and above.
+                rows = self.rows("house.ifc", "--tolerance", "1e-6")
+                self.assertEqual([(row["a_label"], row["b_label"], row["class"]) for row in rows], [("Wall", "Door", "touching")])
+                self.assertEqual(self.rows("house.ifc", "--exclude", "fills"), [])
+
+    def test_shapes_are_shared_and_named(self):
+        self.write("house.ifc", house("IFC4"))
+        shapes = self.run_program("detect", "house.ifc", "house.ifc", "--stage", "features", "--quiet", "--output", "all.jsonl")
+        self.assertEqual(shapes.stdout, "")
+        names = {row["a_label"] for row in map(json.loads, (self.folder / "all.jsonl").read_text(encoding="utf-8").splitlines())}
+        self.assertIn("Büro", names)
+        stream = subprocess.run([READERS / "octopair-ifc", "house.ifc"], capture_output=True, check=True, cwd=self.folder).stdout
+        kinds = []
+        at = 12
+        while at < len(stream):
+            kinds.append(int.from_bytes(stream[at:at + 4], "little"))
+            at += 12 + int.from_bytes(stream[at + 4:at + 12], "little")
+        self.assertEqual((kinds.count(2), kinds.count(3)), (5, 6))
+        # The same stream, read from a file.
+        (self.folder / "house.opmodel").write_bytes(stream)
+        self.assertEqual(self.info("house.opmodel")["objects"], self.info("house.ifc")["objects"])
+
+    def test_spaces_on_demand(self):
+        self.write("house.ifc", house("IFC4"))
+        rows = self.rows("house.ifc", "--include-type", "IfcSpace", "--tolerance", "1e-6")
+        self.assertIn(("Wall", "Room", "touching"), {(row["a_label"], row["b_label"], row["class"]) for row in rows})
+
+    def test_archives(self):
+        with zipfile.ZipFile(self.folder / "house.ifczip", "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("model.ifc", house("IFC4"))
+        self.assertEqual(self.info("house.ifczip")["elements"], "6 of 6 with geometry were read")
+
+    def test_damage(self):
+        text = house("IFC4")
+        self.write("cut.ifc", text[:len(text) // 2])
+        self.assertIn("cut.ifc: is cut", self.run_program("info", "cut.ifc", status=3).stderr)
+        self.write("other.ifc", text.replace("'IFC4'", "'IFC9'"))
+        self.assertIn("other.ifc: ", self.run_program("info", "other.ifc", status=3).stderr)
+        self.write("cut.stp", lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()[:40000])
+        self.assertIn("cut.stp: ", self.run_program("info", "cut.stp", status=3).stderr)
+
+    def test_floors(self):
+        (self.folder / "floors.ifc").write_bytes(lzma.decompress((HERE / "floors_2x3.ifc.xz").read_bytes()))
+        self.assertEqual(self.info("floors.ifc")["objects"], "59 meshes")
+        classes = {row["class"] for row in self.rows("floors.ifc", "--tolerance", "0.002")}
+        self.assertLessEqual(classes, {"touching", "penetrating"})
+
+    def test_as1(self):
+        text = lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()
+        self.write("as1.stp", text)
+        facts = self.info("as1.stp")
+        self.assertEqual((facts["format"], facts["unit"]), ("STEP, read by octopair-step", "mm"))
+        self.assertEqual((facts["objects"], facts["open meshes"]), ("18 meshes", "0"))
+        self.assertEqual(facts["elements"], "18 of 18 with geometry were read")
+        rows = self.rows("as1.stp")
+        self.assertEqual({row["class"] for row in rows}, {"touching"})
+        labels = {row[side] for row in rows for side in ("a_label", "b_label")}
+        self.assertEqual({re.sub(r"\d+$", "", label.lower()) for label in labels} & {"bolt", "nut"}, {"bolt", "nut"}, labels)
+
+    def test_missing_readers(self):
+        self.write("as1.stp", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('CONFIG_CONTROL_DESIGN'));\nENDSEC;\n")
+        refused = self.run_program("info", "as1.stp", readers=None, status=3).stderr
+        self.assertIn("install octopair-step", refused)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
