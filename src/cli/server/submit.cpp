@@ -47,7 +47,7 @@ std::string submit(const SubmitRequest& request, const std::stop_token& stop) {
     const DetectRequest& what = request.what;
     ProgressLine progress(!what.quiet);
     JobClient client(request.server.address, client_options(request.server));
-    io::SceneContent content{.objects = what.mesh_objects};
+    io::SceneContent content{.objects = what.mesh_objects, .reader = reader_of(what)};
     InputSet inputs = read_still_set(what.inputs, content, stop), against;
     content.unit = inputs.scene.space.unit;
     if (!what.against.empty()) against = read_still_set({what.against}, content, stop);

@@ -161,7 +161,8 @@ void check_result(const io::ResultFile& result, const Inputs& inputs, const std:
 void read(Inputs& inputs, ProgressLine& progress) {
     const DetectRequest& request = inputs.request;
     io::SceneContent content{.objects = request.mesh_objects,
-                             .progress = [&](double done) { progress.show("reading", done); }};
+                             .progress = [&](double done) { progress.show("reading", done); },
+                             .reader = reader_of(request)};
 #ifdef OCTOPAIR_WITH_PIPELINE
     content.shapes = true;
 #endif

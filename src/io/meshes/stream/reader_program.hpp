@@ -1,4 +1,5 @@
 // Runs a program that reads a file and writes a model stream (docs/formats.md#model-streams).
+// Start here to change a reader that needs a large library.
 //
 // - The program is a process of its own. If it crashes, hangs or fills the memory, the caller gets an Error, and the process is gone.
 // - Programs: octopair-ifc reads IFC, octopair-step reads STEP and IGES. They are optional.
