@@ -28,7 +28,7 @@ WORDS = {
     "--index-type": "uint32 uint64", "--order": "ascending octal", "--log": "text json",
     "--log-level": "debug info warn error",
 }
-NOTHING = {"N", "M", "S", "F", "BYTES", "SECONDS", "LENGTH", "UUID", "CLIENT", "USER", "ADDRESS", "HOST:PORT"}
+NOTHING = {"N", "M", "S", "F", "BYTES", "SECONDS", "LENGTH", "UUID", "CLIENT", "USER", "ADDRESS", "HOST:PORT", "COMMAND", "TYPE"}
 FILES = ["a.npy", "b.csv", "c.jsonl", "c.bcf", "d.pem", "e.html", "f.json", "g.txt", "hnpy"]
 FOLDER = "folder"
 JOB = "0123abcd-0000-4000-8000-00000000abcd"
