@@ -43,6 +43,7 @@ public:
         const Descriptor writing(ends[1]);
         errors_ = Descriptor(::memfd_create("octopair-reader-errors", MFD_CLOEXEC));
         std::vector<char*> words;
+        words.reserve(arguments.size() + 1);
         for (std::string& argument : arguments) words.push_back(argument.data());
         words.push_back(nullptr);
         id_ = start_child({.path = arguments.front(),
