@@ -12,11 +12,10 @@ import {Shapes} from './shapes.mjs';
 import {StreamWriter} from './stream_writer.mjs';
 
 // What has a shape but is no solid thing.
-const leftOut = new Set(['IfcSpace', 'IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcVirtualElement', 'IfcAnnotation', 'IfcGrid',
-  'IfcSpatialZone', 'IfcSite', 'IfcBuilding', 'IfcBuildingStorey', 'IfcProject', 'IfcExternalSpatialElement', 'IfcPositioningElement',
-  'IfcAlignment', 'IfcReferent', 'IfcPort', 'IfcDistributionPort', 'IfcStructuralCurveMember', 'IfcStructuralSurfaceMember',
-  'IfcStructuralPointConnection', 'IfcStructuralCurveConnection', 'IfcStructuralPointAction', 'IfcStructuralCurveAction',
-  'IfcStructuralSurfaceAction', 'IfcStructuralPointReaction']);
+const leftOut = new Set(['IfcSpace', 'IfcSpatialZone', 'IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcVirtualElement', 'IfcAnnotation',
+  'IfcGrid', 'IfcDistributionPort', 'IfcStructuralCurveMember', 'IfcStructuralSurfaceMember', 'IfcStructuralPointConnection',
+  'IfcStructuralCurveConnection', 'IfcStructuralSurfaceConnection', 'IfcStructuralPointAction', 'IfcStructuralCurveAction',
+  'IfcStructuralLinearAction', 'IfcStructuralSurfaceAction', 'IfcStructuralPlanarAction', 'IfcStructuralPointReaction']);
 
 function parseArguments(words) {
   const wanted = {types: new Set(), file: null};

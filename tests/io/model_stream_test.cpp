@@ -314,6 +314,11 @@ TEST_F(ReaderPrograms, ThatWriteNothingAreEnded) {
     EXPECT_NE(::kill(std::stoi(read_file(folder_.file("id"))), 0), 0);
 }
 
+TEST_F(ReaderPrograms, ThatCloseTheirOutputAndGoOnAreEnded) {
+    (void)error_of(ErrorCode::resource_limit,
+                   [&] { (void)read_with("cat '" + begun() + "'; exec sleep 1000 >&-", std::chrono::seconds(1)); });
+}
+
 TEST_F(ReaderPrograms, AreStopped) {
     std::stop_source stop;
     std::thread other([&] {

@@ -71,16 +71,23 @@ public:
                 if (errno != EINTR) fail_io(path_, "cannot read what " + program_ + " writes", errno);
             }
             check_memory();
-            if (Clock::now() - start > patience_) {
-                throw Error(ErrorCode::resource_limit, fmt::format("{}: {} has written nothing for {} seconds", path_,
-                                                                   program_, patience_.count()));
-            }
+            check_patience(start);
         }
     }
 
     /// Waits for the end of the process. Returns why it failed; empty if it ended with status 0.
     std::string failure() {
-        const int status = wait();
+        const Clock::time_point start = Clock::now();
+        int status = 0;
+        for (;;) {
+            const pid_t ended = ::waitpid(id_, &status, WNOHANG);
+            if (ended < 0 && errno == EINTR) continue;
+            if (ended != 0) break;
+            budget_.checkpoint();
+            check_patience(start);
+            (void)::poll(nullptr, 0, 10);
+        }
+        id_ = 0;
         if (WIFSIGNALED(status))
             return fmt::format("{} ended with the signal {}", program_, ::strsignal(WTERMSIG(status)));
         if (WEXITSTATUS(status) == 0) return {};
@@ -115,17 +122,16 @@ private:
         return text.substr(0, 400);
     }
 
-    int wait() {
-        int status = 0;
-        while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
-        }
-        id_ = 0;
-        return status;
+    void check_patience(Clock::time_point start) const {
+        if (Clock::now() - start <= patience_) return;
+        throw Error(ErrorCode::resource_limit,
+                    fmt::format("{}: {} has written nothing for {} seconds", path_, program_, patience_.count()));
     }
 
-    void end() {
+    void end() const {
         ::kill(-id_, SIGKILL);  // its whole group
-        (void)wait();
+        while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
+        }
     }
 
     std::string path_, program_;
