@@ -14,6 +14,7 @@
 
 #include "../../readers/step/stream_writer.hpp"
 #include "base/descriptor.hpp"
+#include "io/meshes/stream/model_stream.hpp"
 #include "io/meshes/stream/reader_program.hpp"
 #include "io/scene_reader.hpp"
 #include "io/temporary.hpp"
@@ -88,8 +89,17 @@ protected:
     }
 
     LoadedScene read(const std::string& bytes, const io::SceneContent& content = with_shapes) const {
-        write_file(stream_, bytes);
-        return io::read_scene(stream_, content);
+        std::size_t at = 0;
+        const io::ByteSource source = [&](std::span<std::byte> piece) {
+            const std::size_t size = std::min(piece.size(), bytes.size() - at);
+            std::memcpy(piece.data(), bytes.data() + at, size);
+            at += size;
+            return size;
+        };
+        io::ReadBudget budget(stream_, {});
+        budget.add_file(bytes.size());
+        io::ElementInHand in_hand;
+        return io::read_model_stream(source, content, budget, in_hand);
     }
     std::string refusal(const std::string& bytes, ErrorCode code = ErrorCode::bad_input) const {
         return error_of(code, [&] { (void)read(bytes); });
@@ -150,8 +160,9 @@ TEST_F(ModelStreams, RelateElements) {
     EXPECT_EQ(relations.keys[relations.elements[1]], "project/w2");
 }
 
-TEST_F(ModelStreams, AreConvertedToAnotherUnit) {
-    const LoadedScene scene = read(house(), {.shapes = true, .unit = "m"});
+TEST_F(ModelStreams, AreReadFromFilesInAnotherUnit) {
+    write_file(stream_, house());
+    const LoadedScene scene = io::read_scene(stream_, {.shapes = true, .unit = "m"});
     EXPECT_EQ(std::get<Buffer<Box3d>>(scene.boxes)[1].min[0], 0.1);
     EXPECT_EQ(scene.chord, 0.00025);
     EXPECT_EQ(scene.converted_from, "mm");
