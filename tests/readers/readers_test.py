@@ -60,10 +60,10 @@ class Readers(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def run_program(self, *words, readers=READERS, status=0, environment=None):
+    def run_program(self, *words, readers=READERS, status=0, stdin=""):
         path = f"{readers}:{os.environ['PATH']}" if readers else os.environ["PATH"]
-        ended = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=False, cwd=self.folder,
-                               env={**os.environ, "PATH": path, **(environment or {})})
+        ended = subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=False, cwd=self.folder, input=stdin,
+                               env={**os.environ, "PATH": path})
         self.assertEqual(ended.returncode, status, ended.stderr)
         return ended
 
@@ -123,6 +123,15 @@ class Readers(unittest.TestCase):
         with zipfile.ZipFile(self.folder / "house.ifczip", "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr("model.ifc", house("IFC4"))
         self.assertEqual(self.info("house.ifczip")["elements"], "6 of 6 with geometry were read")
+
+    def test_standard_input_and_odd_names(self):
+        text = house("IFC4")
+        count = self.run_program("detect", "-", "--count-only", "--quiet", stdin=text).stdout
+        for name in ("-house.ifc", "a 'b' \"c\".ifc", "line\nbreak.ifc"):
+            self.write(name, text)
+            self.assertEqual(self.run_program("detect", f"./{name}", "--count-only", "--quiet").stdout, count)
+            self.assertEqual(self.run_program("detect", f"./{name}", "--count-only", "--quiet", "--reader",
+                                              str(READERS / "octopair-ifc")).stdout, count)
 
     def test_damage(self):
         text = house("IFC4")

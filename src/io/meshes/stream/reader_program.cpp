@@ -201,6 +201,10 @@ LoadedScene read_by_program(const std::string& path, std::vector<std::string> ar
     const InputFile file(path);  // throws an error with the reason of the system if the file cannot be opened
     ReadBudget budget(path, stop);
     budget.add_file(file.size());
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) {  // a stream: the program reads the copy in memory
+        arguments.back() = fmt::format("/proc/{}/fd/{}", ::getpid(), file.descriptor());
+    }
     ReaderProcess process(path, arguments, budget, content.reader.patience);
     const ByteSource source = [&](std::span<std::byte> bytes) { return process.read(bytes); };
     ElementInHand in_hand;

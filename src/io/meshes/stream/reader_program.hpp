@@ -24,7 +24,7 @@ std::optional<std::string> find_reader_program(std::string_view name);
 /// Returns the arguments that read `path`; nothing if neither a command nor an installed program reads it.
 std::optional<std::vector<std::string>> reader_arguments(const std::string& path, const ReaderChoice& choice);
 
-/// Runs the program with its arguments, and reads what it writes. Thread safety: any thread may call it.
+/// Runs the program with its arguments, the last of which is the file, and reads what it writes. Thread safety: any thread may call it.
 /// Throws: what read_model_stream() throws; Error{bad_input} if the program fails or crashes, with the element in hand if it is known;
 /// Error{resource_limit} if it needs too much memory, or writes nothing for too long; Error{cancelled} within 100 ms of a stop request.
 LoadedScene read_by_program(const std::string& path, std::vector<std::string> arguments, const SceneContent& content,
