@@ -20,7 +20,7 @@ const leftOut = new Set(['IfcSpace', 'IfcSpatialZone', 'IfcOpeningElement', 'Ifc
 function parseArguments(words) {
   const wanted = {types: new Set(), file: null};
   for (let i = 0; i < words.length; ++i) {
-    if (words[i] === '--include-type') wanted.types.add(words[++i]);
+    if (words[i] === '--include-type' && i + 1 < words.length) wanted.types.add(words[++i].toLowerCase());
     else if (wanted.file === null) wanted.file = words[i];
     else throw new Error(`one file, not also ${words[i]}`);
   }
@@ -54,10 +54,16 @@ function readText(file) {
 // Bodies, not axes, footprints or boxes, are what collides.
 const noBodies = new Set(['Axis', 'FootPrint', 'Box', 'Annotation', 'Profile', 'CoG', 'Reference', 'Plan', 'Clearance', 'Lighting']);
 
-function hasBody(relations, product) {
-  const representation = product.Representation?.value;
-  const parts = representation === undefined ? [] : relations.line(representation)?.Representations ?? [];
-  return parts.some(part => !noBodies.has(relations.text(part.value, 'RepresentationIdentifier')));
+// Whether a product has a body: true, false, or null if its representation cannot be read. Removes what is no body, because web-ifc would
+// take it for one.
+function findBody(api, model, relations, product) {
+  const shape = product.Representation?.value;
+  if (shape === undefined) return false;
+  const parts = relations.line(shape)?.Representations;
+  if (!parts) return null;
+  const bodies = parts.filter(part => !noBodies.has(relations.text(part.value, 'RepresentationIdentifier')));
+  if (bodies.length > 0 && bodies.length < parts.length) api.WriteLine(model, {...relations.line(shape), Representations: bodies});
+  return bodies.length > 0;
 }
 
 class Counts {
@@ -77,7 +83,7 @@ async function main(words) {
   const {types, file} = parseArguments(words);
   const writer = new StreamWriter();
   const text = readText(file);
-  if (!text.subarray(Math.max(0, text.length - 4096)).toString('latin1').includes('END-ISO-10303-21'))
+  if (text.lastIndexOf('END-ISO-10303-21') < text.lastIndexOf('ENDSEC'))
     return writer.failure('is cut: an IFC file ends with END-ISO-10303-21;');
   const api = new ifc.IfcAPI();
   await api.Init();
@@ -88,22 +94,35 @@ async function main(words) {
   const projects = api.GetLineIDsWithType(model, ifc.IFCPROJECT, true);
   writer.model({unit: 'm', up: 'z', project: projects.size() > 0 ? relations.globalId(projects.get(0)) : ''});
 
+  for (const type of types) {
+    if (![...leftOut].some(known => known.toLowerCase() === type)) writer.warning(`--include-type ${type}: no such type is left out`);
+  }
   const shapes = new Shapes(api, model, writer);
   const lost = new Counts(), out = new Counts();
   let withGeometry = 0, read = 0;
-  relations.all(ifc.IFCPRODUCT, product => {
-    if (!hasBody(relations, product)) return;
-    const id = product.expressID;
+  const products = api.GetLineIDsWithType(model, ifc.IFCPRODUCT, true);
+  for (let i = 0; i < products.size(); ++i) {
+    const id = products.get(i);
     const type = relations.typeName(id);
-    if (leftOut.has(type) && !types.has(type)) return out.add(type.toUpperCase());
-    const described = relations.describe(id);
-    writer.element(`${type} ${described.id} ('${described.label}')`);
+    const product = relations.line(id);
+    const body = product ? findBody(api, model, relations, product) : null;
+    if (body === false) continue;
+    if (leftOut.has(type) && !types.has(type.toLowerCase())) {
+      out.add(type.toUpperCase());
+      continue;
+    }
+    const described = product ? relations.describe(id) : {id: `#${id}`, label: ''};
+    const named = `${described.id} ('${described.label}')`;
+    writer.element(`${type} ${named}`);
     ++withGeometry;
-    const placed = shapes.of(id);
-    if (!placed) return lost.add(type.toUpperCase(), `${described.id} ('${described.label}')`);
-    ++read;
-    writer.instance({...described, ...placed});
-  });
+    const placed = body ? shapes.of(id) : null;
+    if (placed) {
+      ++read;
+      writer.instance({...described, ...placed});
+    } else {
+      lost.add(type.toUpperCase(), named);
+    }
+  }
   writer.end({withGeometry, read, lost: lost.list(), leftOut: out.list()});
 }
 

@@ -1,7 +1,7 @@
 // Geometry of elements: the meshes of web-ifc, welded exactly, and shared by all elements that have them alike.
 //
 // web-ifc gives an element as pieces: a mesh in float32, and a float64 transform from it to the world in metres, with y up. Pieces of an
-// element become one shape, in the coordinates of the first piece. Elements whose pieces lie alike share a shape.
+// element become one shape, in the coordinates of the first piece. Elements whose pieces lie alike, to 1e-9 there, share a shape.
 
 // The axes of IFC from those of web-ifc, exactly: (x, y, z) becomes (x, -z, y).
 function worldTransform(columns) {
@@ -32,7 +32,12 @@ function inverse(m) {
 
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-// Joins vertices with equal coordinates, and leaves out triangles without area.
+// The largest factor by which a transform lengthens an axis.
+function stretch(m) {
+  return Math.max(...[0, 1, 2].map(k => Math.hypot(m[k], m[4 + k], m[8 + k])));
+}
+
+// Joins vertices with equal coordinates, and leaves out triangles with two equal corners.
 function weld(vertices, triangles) {
   const numbers = new Map();
   const points = [];
@@ -110,9 +115,10 @@ export class Shapes {
     for (const {geometry, local} of pieces) {
       const mesh = this.mesh(geometry);
       const first = vertices.length / 3;
+      const scale = stretch(local);
       for (let i = 0; i < mesh.vertices.length; i += 3) {
         const [x, y, z] = mesh.vertices.subarray(i, i + 3);
-        error = Math.max(error, Math.abs(x), Math.abs(y), Math.abs(z));
+        error = Math.max(error, scale * Math.abs(x), scale * Math.abs(y), scale * Math.abs(z));
         for (let k = 0; k < 3; ++k)
           vertices.push(local === identity ? mesh.vertices[i + k] : local[4 * k] * x + local[4 * k + 1] * y + local[4 * k + 2] * z + local[4 * k + 3]);
       }

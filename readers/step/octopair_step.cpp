@@ -2,13 +2,14 @@
 //
 //     octopair-step [--chord MM] FILE
 //
-// Each solid, or shell without a solid, of a part is a shape. Its curved faces become triangles that are at most the chord error away:
+// Each solid of a part is a shape, and so are all its faces outside of solids together. Its curved faces become triangles that are at most the chord error away:
 // 0.1 mm, or 1e-4 of the size of a part that is smaller than 1 m. Instances of a part share its shape.
 #include <BRepBndLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
+#include <Interface_CheckIterator.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -26,6 +27,7 @@
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <gp_Trsf.hxx>
 
 #include <algorithm>
@@ -76,19 +78,31 @@ Options parse(int count, char** words) {
 bool is_iges(const std::string& file) {
     std::FILE* const opened = std::fopen(file.c_str(), "rb");
     if (opened == nullptr) throw std::runtime_error("cannot open " + file);
-    std::array<char, 12> head{};
-    const std::size_t got = std::fread(head.data(), 1, head.size(), opened);
+    std::string head(4096, '\0');
+    head.resize(std::fread(head.data(), 1, head.size(), opened));
     std::fclose(opened);
-    return got < head.size() || std::memcmp(head.data(), "ISO-10303-21", head.size()) != 0;
+    return head.find("ISO-10303-21") == std::string::npos;
 }
 
+Handle(XSControl_WorkSession) session_of(const STEPCAFControl_Reader& reader) { return reader.Reader().WS(); }
+Handle(XSControl_WorkSession) session_of(const IGESCAFControl_Reader& reader) { return reader.WS(); }
+
+/// Reads a file into a document. Returns what Open CASCADE finds missing or wrong in it, which it would leave out in silence; or an empty text.
 template <typename Reader>
-void transfer(Reader& reader, const std::string& file, Handle(TDocStd_Document) & document) {
+std::string transfer(Reader& reader, const std::string& file, Handle(TDocStd_Document) & document) {
     reader.SetNameMode(true);
     reader.SetColorMode(false);
     reader.SetLayerMode(false);
     if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) throw std::runtime_error("Open CASCADE cannot parse it");
+    std::string first;
+    int faults = 0;
+    Interface_CheckIterator checks = session_of(reader)->ModelCheckList();
+    for (checks.Start(); checks.More(); checks.Next()) {
+        if (checks.Value()->HasFailed() && faults++ == 0) first = checks.Value()->CFail(1);
+    }
     if (!reader.Transfer(document)) throw std::runtime_error("Open CASCADE finds no shapes in it");
+    if (faults == 0) return {};
+    return "Open CASCADE finds " + std::to_string(faults) + " faults, so parts may be missing; the first: " + first;
 }
 
 std::string name_of(const TDF_Label& label) {
@@ -241,6 +255,8 @@ private:
                     add_face(TopoDS::Face(face.Current()), mesh);
                 write(mesh);
             }
+            if (at->second.empty())
+                writer_.warning("'" + names.path + "' has no solid: all its faces are one object");
             WeldedMesh loose;
             for (TopExp_Explorer face(shape, TopAbs_FACE, TopAbs_SOLID); face.More(); face.Next())
                 add_face(TopoDS::Face(face.Current()), loose);
@@ -266,15 +282,17 @@ void run(const Options& options) {
     StreamWriter writer(1);
     Handle(TDocStd_Document) document;
     XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+    std::string faults;
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     if (is_iges(options.file)) {
         IGESCAFControl_Reader reader;
-        transfer(reader, options.file, document);
+        faults = transfer(reader, options.file, document);
     } else {
         STEPCAFControl_Reader reader;
-        transfer(reader, options.file, document);
+        faults = transfer(reader, options.file, document);
     }
     writer.model("mm", "z", "");
+    if (!faults.empty()) writer.warning(faults);
     AssemblyWalk(XCAFDoc_DocumentTool::ShapeTool(document->Main()), options, writer).run();
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/format.h>
+
 #include "io/formats/unit_change.hpp"
 
 namespace octopair::io {
@@ -40,6 +42,15 @@ void append_optional(std::vector<T>& to, std::vector<T>&& from, const Counts& co
 }
 
 }  // namespace
+
+std::string ElementCounts::lost_text() const {
+    if (lost.empty()) return {};
+    std::string types;
+    for (const LostElements& some : lost) {
+        types += fmt::format("{}{} {}, the first is {}", types.empty() ? "" : "; ", some.count, some.type, some.first);
+    }
+    return fmt::format("{} of {} elements with geometry were not read: {}", with_geometry - read, with_geometry, types);
+}
 
 void ElementCounts::add(const ElementCounts& others) {
     with_geometry += others.with_geometry;

@@ -74,6 +74,8 @@ struct ElementCounts {
     std::vector<LostElements> lost;   ///< the others, by file and type, in the order of the first
     std::vector<TypeCount> left_out;  ///< elements that are left out on purpose, by type
 
+    /// Says how many elements of one file are lost, of which types, and which are the first; empty if none is.
+    std::string lost_text() const;
     /// Adds the counts of other files.
     void add(const ElementCounts& others);
 };

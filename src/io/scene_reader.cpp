@@ -148,8 +148,11 @@ LoadedScene read_known(const std::string& path, const SceneContent& content, con
 LoadedScene read_scene(const std::string& path, const SceneContent& content, const std::stop_token& stop) {
     if (content.reader.command.empty()) check_readable(path);
 #ifdef OCTOPAIR_WITH_MESHES
-    if (auto arguments = reader_arguments(path, content.reader)) {
-        return read_by_program(path, std::move(*arguments), content, stop);
+    if (auto arguments = reader_arguments(path, content)) {
+        LoadedScene scene = read_by_program(path, std::move(*arguments), content, stop);
+        std::string warning = content.reader.command.empty() ? name_warning(path) : std::string();
+        if (!warning.empty()) scene.warnings.push_back(std::move(warning));
+        return scene;
     }
 #endif
     LoadedScene scene = read_known(path, content, stop);

@@ -119,6 +119,35 @@ class Readers(unittest.TestCase):
         rows = self.rows("house.ifc", "--include-type", "IfcSpace", "--tolerance", "1e-6")
         self.assertIn(("Wall", "Room", "touching"), {(row["a_label"], row["b_label"], row["class"]) for row in rows})
 
+    def test_units_do_not_change_the_tolerance(self):
+        found = []
+        for prefix, scale in ((".MILLI.", 1000), ("$", 1)):
+            file = IfcWriter("IFC4", prefix)
+            for k, (low, high) in enumerate((((0, 0, 0), (30, 1, 3)), ((29.999, 0, 0), (60, 1, 3)))):
+                block = file.block(*(tuple(scale * c for c in corner) for corner in (low, high)))
+                file.element("IFCWALL", f"Wall {k}", file.represent([block]), "$,$")
+            self.write("walls.ifc", file.text())
+            found.append([(row["class"], round(float(row["depth"]), 6)) for row in self.rows("walls.ifc")])
+        self.assertEqual(found, 2 * [[("penetrating", 0.001)]])
+
+    def test_what_is_no_body(self):
+        file = IfcWriter("IFC4")
+        body = file.represent([file.block((0, 0, 0), (1000, 1000, 1000))])
+        room = file.represent([file.block((0, -3000, 0), (1000, 0, 1000))])
+        file.lines[int(room[1:]) - 1] = file.lines[int(room[1:]) - 1].replace("'Body'", "'Clearance'")
+        file.element("IFCPUMP", "Pump", f"{body},{room}", "$,$")
+        self.write("pump.ifc", file.text())
+        self.assertEqual(self.info("pump.ifc")["triangles"], "12")
+
+    def test_lost_elements_are_named(self):
+        file = IfcWriter("IFC4")
+        file.element("IFCWALL", "Whole", file.represent([file.block((0, 0, 0), (1000, 200, 3000))]), "$,$")
+        file.add(f"IFCWALL({file.root('Lost')},$,$,$,#99999,$,$)")
+        self.write("lost.ifc", file.text())
+        facts = self.info("lost.ifc")
+        self.assertEqual(facts["elements"], "1 of 2 with geometry were read")
+        self.assertIn("Lost", self.run_program("info", "lost.ifc").stdout)
+
     def test_archives(self):
         with zipfile.ZipFile(self.folder / "house.ifczip", "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr("model.ifc", house("IFC4"))

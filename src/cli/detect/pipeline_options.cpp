@@ -199,8 +199,7 @@ Stage stage_of(const DetectRequest& request) {
 }
 
 double chord_of(const DetectRequest& request, const SetPair& sets) {
-    if (request.pipeline.chord) return *request.pipeline.chord;
-    double chord = 0;
+    double chord = request.pipeline.chord.value_or(0);
     for (const InputSet* set : {&sets.first, sets.second}) {
         if (set != nullptr) chord = std::max(chord, set->scene.chord);
     }

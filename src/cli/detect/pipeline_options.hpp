@@ -66,11 +66,12 @@ Stage stage_of(const DetectRequest& request);
 /// Returns the first input without shapes, or nothing if all inputs have shapes.
 std::optional<std::string> input_of_boxes(const DetectRequest& request);
 
-/// Returns the chord error of --chord; without it the greatest that the readers know, or 0.
+/// Returns the greatest chord error: of --chord, and of what the readers know.
 double chord_of(const DetectRequest& request, const SetPair& sets);
 
-/// Returns the tolerance without --tolerance: twice the chord error, because both surfaces of an overlap may err; plus the error of rounding. That is 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two to four steps of float32
-/// at this coordinate. It is 0 if no coordinate was rounded.
+/// Returns the tolerance without --tolerance: twice the chord error, because both surfaces of an overlap may err; plus the error of rounding.
+/// That is 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two to four steps of float32 at this
+/// coordinate. It is 0 if no coordinate was rounded.
 double default_tolerance_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns the value of --tolerance, or the default.

@@ -18,6 +18,7 @@
 #include "io/meshes/assimp/scene_parts.hpp"
 #include "io/meshes/gltf/gltf_scene.hpp"
 #include "io/meshes/plain/plain_mesh.hpp"
+#include "io/meshes/stream/reader_program.hpp"
 #include "io/meshes/three_mf/three_mf_scene.hpp"
 #endif
 
@@ -178,6 +179,8 @@ shape::Mesh load_mesh(const std::string& path, [[maybe_unused]] LoadedScene& sce
     check_readable(path);
     if (std::string warning = name_warning(path); !warning.empty()) scene.warnings.push_back(std::move(warning));
     const std::string ending = format_ending(path);
+    if (ending == ".opmodel" || reader_program_of(ending) == "octopair-step")
+        refuse(path, "a JSON scene cannot name it; give it as an input of its own");
     if (is_plain_ending(ending)) return read_plain_mesh(path, scene, stop);
     if (is_gltf_ending(ending)) {
         if (auto mesh = read_gltf_mesh(path, scene, stop)) return std::move(*mesh);

@@ -65,14 +65,9 @@ void add_lost(const std::string& file, const IfcBody& body, const IfcText& text,
 
 /// Returns a warning about elements of an IFC file that have a body but no instance, or an empty text.
 std::string lost_elements(const MeshFile& file) {
-    const ElementCounts elements = elements_of(file);
-    if (elements.lost.empty()) return {};
-    std::string types;
-    for (const LostElements& lost : elements.lost) {
-        types += fmt::format("{}{} {}, the first is {}", types.empty() ? "" : "; ", lost.count, lost.type, lost.first);
-    }
-    return fmt::format("{}: {} of {} elements with geometry were not read: {}. Export the model as {}glTF or OBJ",
-                       file.path(), elements.with_geometry - elements.read, elements.with_geometry, types,
+    const std::string words = elements_of(file).lost_text();
+    if (words.empty()) return {};
+    return fmt::format("{}: {}. Export the model as {}glTF or OBJ", file.path(), words,
                        in_upper_case(file.ifc_text().schema) == "IFC2X3" ? "" : "IFC2x3, ");
 }
 

@@ -19,6 +19,13 @@ namespace octopair::io {
 
 namespace {
 
+/// Returns a text as one line that a terminal shows as it is.
+std::string line_of(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; }, ' ');
+    return text;
+}
+
 /// What the records of a stream say.
 class StreamedModel {
 public:
@@ -42,6 +49,8 @@ public:
         scene.space.up = up_;
         scene.project = std::move(project_);
         scene.warnings = std::move(warnings_);
+        if (const std::string lost = elements_.lost_text(); !lost.empty())
+            scene.warnings.push_back(budget_.path() + ": " + lost);
         scene.elements = std::move(elements_);
         for (const TypeCount& type : scene.elements.left_out)
             scene.not_read.push_back(fmt::format("{} ({})", type.type, type.count));
@@ -61,13 +70,14 @@ private:
             case StreamRecord::instance:
                 return read_instance();
             case StreamRecord::element:
-                in_hand_ = records_.text();
+                in_hand_ = line_of(records_.text());
                 return records_.finish();
             case StreamRecord::warning:
-                warnings_.push_back(budget_.path() + ": " + records_.text());
+                budget_.charge(1, sizeof(std::string) + budget_.path().size());
+                warnings_.push_back(budget_.path() + ": " + line_of(records_.text()));
                 return records_.finish();
             case StreamRecord::failure:
-                records_.refuse(records_.text());
+                records_.refuse(line_of(records_.text()));
             case StreamRecord::end:
                 return read_end();
         }
@@ -90,7 +100,7 @@ private:
     void read_shape() {
         const double error = records_.real();
         if (!(error >= 0) || !std::isfinite(error)) records_.refuse("has a shape whose error is no length");
-        error_ = std::max(error_, error);
+        errors_.push_back(error);
         const std::uint32_t vertices = records_.number32(), triangles = records_.number32();
         SharedMesh& mesh = placed_.meshes.emplace_back();
         mesh.triangles.vertices = records_.array<Point3d>(vertices);
@@ -115,7 +125,9 @@ private:
         object.mesh = records_.number32();
         if (object.mesh >= placed_.meshes.size())
             records_.refuse(fmt::format("has an instance of shape {}, which it has not", object.mesh));
+        budget_.charge(1, sizeof(PlacedMesh) + sizeof(DetailTexts) + sizeof(std::string));
         object.pose = read_pose();
+        error_ = std::max(error_, errors_[object.mesh] * object.pose.largest_scale());
         object.name = records_.text();
         DetailTexts& texts = details_.emplace_back();
         for (const Detail detail :
@@ -147,7 +159,10 @@ private:
     void read_relations(const std::string& id) {
         const std::string host = records_.text(), assembly = records_.text();
         std::vector<std::string> systems;
-        for (std::uint32_t left = records_.number32(); left > 0; --left) systems.push_back(records_.text());
+        for (std::uint32_t left = records_.number32(); left > 0; --left) {
+            budget_.charge(1, sizeof(std::string));
+            systems.push_back(records_.text());
+        }
         const std::uint32_t own = id.empty() ? 0 : keys_.of(scope_ + id);
         relations_.elements.push_back(own);
         if (own == 0) return;
@@ -191,7 +206,8 @@ private:
     std::vector<std::string> warnings_;
     UpAxis up_ = UpAxis::unknown;
     std::string project_, scope_;
-    double error_ = 0;
+    std::vector<double> errors_;  // of the shapes, in their own coordinates
+    double error_ = 0;            // greatest error in the world
     bool has_model_ = false, ended_ = false;
 };
 

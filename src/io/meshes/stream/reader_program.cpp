@@ -64,13 +64,13 @@ public:
         const Clock::time_point start = Clock::now();
         for (;;) {
             budget_.checkpoint();
+            if (Clock::now() - checked_ > std::chrono::milliseconds(100)) check_memory();
             pollfd waiting{pipe_.number(), POLLIN, 0};
             if (::poll(&waiting, 1, 100) > 0) {
                 const ssize_t got = ::read(pipe_.number(), bytes.data(), bytes.size());
                 if (got >= 0) return std::size_t(got);
                 if (errno != EINTR) fail_io(path_, "cannot read what " + program_ + " writes", errno);
             }
-            check_memory();
             check_patience(start);
         }
     }
@@ -80,12 +80,15 @@ public:
         const Clock::time_point start = Clock::now();
         int status = 0;
         for (;;) {
-            const pid_t ended = ::waitpid(id_, &status, WNOHANG);
-            if (ended < 0 && errno == EINTR) continue;
-            if (ended != 0) break;
+            siginfo_t ended{};
+            const int result = ::waitid(P_PID, id_t(id_), &ended, WEXITED | WNOHANG | WNOWAIT);
+            if (result == 0 && ended.si_pid != 0) break;
             budget_.checkpoint();
             check_patience(start);
             (void)::poll(nullptr, 0, 10);
+        }
+        ::kill(-id_, SIGKILL);  // what it may have left behind
+        while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
         }
         id_ = 0;
         if (WIFSIGNALED(status))
@@ -98,7 +101,12 @@ public:
 
 private:
     /// Throws: Error{resource_limit} if the process has more memory than a reader of octopair may have.
-    void check_memory() const {
+    void check_memory() {
+        checked_ = Clock::now();
+        constexpr off_t most_errors = 16 << 20;
+        if (::lseek(errors_.number(), 0, SEEK_END) > most_errors) {
+            throw Error(ErrorCode::resource_limit, fmt::format("{}: {} writes endless messages", path_, program_));
+        }
         std::ifstream file(fmt::format("/proc/{}/statm", id_));
         std::uint64_t all = 0, resident = 0;
         if (!(file >> all >> resident)) return;
@@ -138,6 +146,7 @@ private:
     const ReadBudget& budget_;
     std::chrono::seconds patience_;
     Descriptor pipe_, errors_;
+    Clock::time_point checked_ = Clock::now();
     pid_t id_ = 0;
 };
 
@@ -175,7 +184,8 @@ std::optional<std::string> find_reader_program(std::string_view name) {
     return std::nullopt;
 }
 
-std::optional<std::vector<std::string>> reader_arguments(const std::string& path, const ReaderChoice& choice) {
+std::optional<std::vector<std::string>> reader_arguments(const std::string& path, const SceneContent& content) {
+    const ReaderChoice& choice = content.reader;
     // A path that begins with "-" is no option.
     const std::string file = path.starts_with('-') ? "./" + path : path;
     if (!choice.command.empty()) return {{"/bin/sh", "-c", choice.command + " \"$1\"", "sh", file}};
@@ -190,7 +200,7 @@ std::optional<std::vector<std::string>> reader_arguments(const std::string& path
         }
     } else if (choice.chord > 0) {
         arguments.emplace_back("--chord");
-        arguments.push_back(number_text(choice.chord));
+        arguments.push_back(number_text(UnitChange(content.unit, "mm")(choice.chord)));
     }
     arguments.push_back(file);
     return arguments;

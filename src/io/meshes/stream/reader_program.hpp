@@ -22,7 +22,7 @@ std::string_view reader_program_of(std::string_view ending);
 std::optional<std::string> find_reader_program(std::string_view name);
 
 /// Returns the arguments that read `path`; nothing if neither a command nor an installed program reads it.
-std::optional<std::vector<std::string>> reader_arguments(const std::string& path, const ReaderChoice& choice);
+std::optional<std::vector<std::string>> reader_arguments(const std::string& path, const SceneContent& content);
 
 /// Runs the program with its arguments, the last of which is the file, and reads what it writes. Thread safety: any thread may call it.
 /// Throws: what read_model_stream() throws; Error{bad_input} if the program fails or crashes, with the element in hand if it is known;
