@@ -11,7 +11,7 @@ import {Relations} from './relations.mjs';
 import {Shapes} from './shapes.mjs';
 import {StreamWriter} from './stream_writer.mjs';
 
-// What has a shape but is no solid thing.
+// These types have a shape, but their elements are no solid things.
 const leftOut = new Set(['IfcSpace', 'IfcSpatialZone', 'IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcVirtualElement', 'IfcAnnotation',
   'IfcGrid', 'IfcDistributionPort', 'IfcStructuralCurveMember', 'IfcStructuralSurfaceMember', 'IfcStructuralPointConnection',
   'IfcStructuralCurveConnection', 'IfcStructuralSurfaceConnection', 'IfcStructuralPointAction', 'IfcStructuralCurveAction',

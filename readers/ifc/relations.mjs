@@ -1,4 +1,4 @@
-// What an IFC file says of its elements besides geometry: names, where they are, what they fill and belong to.
+// Relations reads the names, places and relations of the elements of an IFC file.
 import * as ifc from 'web-ifc';
 
 const refs = value => (Array.isArray(value) ? value : value ? [value] : []).map(item => item?.value).filter(item => typeof item === 'number');
@@ -111,7 +111,7 @@ export class Relations {
     return members.flatMap(member => refs(line[member])).flatMap(ref => this.materialNames(ref, depth + 1));
   }
 
-  // What is above an element, from the project down.
+  // Returns what contains an element, from the project down.
   above(id) {
     const path = [];
     for (let at = this.containers.get(id); at !== undefined && !path.includes(at); at = this.containers.get(at)) path.unshift(at);

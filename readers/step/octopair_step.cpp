@@ -141,10 +141,11 @@ private:
     std::map<Point, std::uint32_t> numbers_;
 };
 
-void add_face(const TopoDS_Face& face, WeldedMesh& mesh) {
+/// Adds the triangles of a face. Returns false if it has none.
+bool add_face(const TopoDS_Face& face, WeldedMesh& mesh) {
     TopLoc_Location location;
     const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-    if (triangulation.IsNull()) throw std::runtime_error("Open CASCADE cannot triangulate a face");
+    if (triangulation.IsNull()) return false;
     const gp_Trsf& place = location.Transformation();
     std::vector<std::uint32_t> numbers;
     for (int i = 1; i <= triangulation->NbNodes(); ++i) {
@@ -158,6 +159,7 @@ void add_face(const TopoDS_Face& face, WeldedMesh& mesh) {
         if (turned) std::swap(b, c);
         mesh.add({numbers[std::size_t(a - 1)], numbers[std::size_t(b - 1)], numbers[std::size_t(c - 1)]});
     }
+    return true;
 }
 
 double chord_for(const TopoDS_Shape& shape, const Options& options) {
@@ -215,7 +217,7 @@ private:
         if (!TopExp_Explorer(XCAFDoc_ShapeTool::GetShape(part), TopAbs_FACE).More()) return;
         writer_.element("the part '" + names.path + "'");
         ++parts_;
-        const auto shapes = shapes_of(part, names);
+        const std::vector<std::uint32_t>& shapes = shapes_of(part, names);
         if (shapes.empty()) return lost_.add(names.product, names.path);
         ++read_;
         std::array<double, 16> transform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -243,26 +245,22 @@ private:
         if (!is_new) return at->second;
         const double chord = chord_for(shape, options_);
         BRepMesh_IncrementalMesh(shape, chord, false, 0.3, false);
-        const auto write = [&](WeldedMesh& mesh) {
+        int missing = 0;
+        const auto write = [&](TopExp_Explorer faces) {
+            WeldedMesh mesh;
+            for (; faces.More(); faces.Next()) missing += add_face(TopoDS::Face(faces.Current()), mesh) ? 0 : 1;
             if (mesh.shape.triangles.empty()) return;
             mesh.shape.error = chord;
             at->second.push_back(writer_.shape(mesh.shape));
         };
-        try {
-            for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) {
-                WeldedMesh mesh;
-                for (TopExp_Explorer face(solid.Current(), TopAbs_FACE); face.More(); face.Next())
-                    add_face(TopoDS::Face(face.Current()), mesh);
-                write(mesh);
-            }
-            if (at->second.empty())
-                writer_.warning("'" + names.path + "' has no solid: all its faces are one object");
-            WeldedMesh loose;
-            for (TopExp_Explorer face(shape, TopAbs_FACE, TopAbs_SOLID); face.More(); face.Next())
-                add_face(TopoDS::Face(face.Current()), loose);
-            write(loose);
-        } catch (const std::runtime_error& error) {
-            writer_.warning("'" + names.path + "' is not read whole: " + error.what());
+        for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next())
+            write(TopExp_Explorer(solid.Current(), TopAbs_FACE));
+        if (at->second.empty())
+            writer_.warning("'" + names.path + "' has no solid: all its faces are one object");
+        write(TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID));
+        if (missing > 0) {
+            writer_.warning("'" + names.path + "' lacks " + std::to_string(missing) +
+                            " faces, which Open CASCADE cannot triangulate");
         }
         return at->second;
     }

@@ -99,7 +99,7 @@ export interface Collision extends GoneTexts {
   // Of the boxes, if no exact test computed a depth. Negative for a gap.
   overlap?: number;
   change?: string;
-  // What people decided about the collision.
+  // The decision of people about the collision.
   status?: string;
   comment?: string;
   // The deepest first.

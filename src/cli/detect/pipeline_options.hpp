@@ -70,7 +70,7 @@ std::optional<std::string> input_of_boxes(const DetectRequest& request);
 double chord_of(const DetectRequest& request, const SetPair& sets);
 
 /// Returns the tolerance without --tolerance: twice the chord error, because both surfaces of an overlap may err; plus the error of rounding.
-/// That is 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two to four steps of float32 at this
+/// The error of rounding is 2^-22 of the largest coordinate that was rounded to float32 (LoadedScene), which is two to four steps of float32 at this
 /// coordinate. It is 0 if no coordinate was rounded.
 double default_tolerance_of(const DetectRequest& request, const SetPair& sets);
 

@@ -34,7 +34,7 @@ FrameSet::FrameSet(const std::vector<std::string>& paths, const io::SceneContent
     for (const std::string& path : paths) {
         if (io::is_json_file(path)) io::refuse(path, "--events does not support JSON scenes yet");
     }
-    open_moving(paths);
+    if (content.reader.command.empty()) open_moving(paths);
     if (!moving_.empty()) return;
     still_ = read_input_set(paths, content, stop);
     objects_ = still_.scene.objects;

@@ -83,7 +83,7 @@ Part part_of(const std::string& path, const io::LoadedScene& scene) {
 class PartFile {
 public:
     PartFile(const std::string& path, const io::SceneContent& content, const std::stop_token& stop) {
-        if (io::is_npy_file(path)) {
+        if (content.reader.command.empty() && io::is_npy_file(path)) {
             io::check_readable(path);
             npy_.emplace(path);
         } else {

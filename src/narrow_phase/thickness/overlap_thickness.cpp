@@ -34,7 +34,7 @@ struct SearchBox {
     bool operator<(const SearchBox& other) const { return longest() < other.longest(); }
 };
 
-/// What the search found around a box.
+/// The triangles and the slopes that the search found around a box.
 struct Surroundings {
     NearLists near;              ///< triangles that count in the box
     Point3d slopes = {1, 1, 1};  ///< for each axis, the greatest coordinate of a piece's normal

@@ -26,7 +26,7 @@ std::string line_of(std::string text) {
     return text;
 }
 
-/// What the records of a stream say.
+/// StreamedModel collects the records of a stream, and makes a scene of them.
 class StreamedModel {
 public:
     StreamedModel(StreamRecords& records, ReadBudget& budget, ElementInHand& in_hand)
