@@ -30,7 +30,8 @@ CMAKE_OPTIONS = {
     "adapters": "OCTOPAIR_WITH_ADAPTERS",
 }
 # Options of CMake that a package does not use, because nothing of these parts is installed for users of C++.
-CMAKE_OFF = ["OCTOPAIR_WITH_C", "OCTOPAIR_WITH_PYTHON", "OCTOPAIR_BUILD_TESTS", "OCTOPAIR_BUILD_BENCHMARKS"]
+CMAKE_OFF = ["OCTOPAIR_WITH_C", "OCTOPAIR_WITH_PYTHON", "OCTOPAIR_WITH_IFC", "OCTOPAIR_WITH_STEP", "OCTOPAIR_BUILD_TESTS",
+             "OCTOPAIR_BUILD_BENCHMARKS"]
 
 # Option (None: always) -> packages. gRPC stands before protobuf and OpenSSL: it names exact versions, which the ranges then take.
 REQUIREMENTS = {

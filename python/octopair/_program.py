@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from typing import Any, Dict, List, Literal, Optional, Sequence
+from typing import Any, Dict, List, Literal, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +72,9 @@ def _run(arguments: Sequence[str]) -> None:
 
 
 def _option(name: str, value: Any) -> List[str]:
-    """Returns the arguments of an option: none for None and False, one for True."""
+    """Returns the arguments of an option: none for None and False, one for True, one for each element of a list."""
+    if isinstance(value, (list, tuple)):
+        return [argument for element in value for argument in _option(name, element)]
     flag = "--" + name.replace("_", "-")
     if value is None or value is False:
         return []
@@ -119,10 +121,11 @@ class Detection:
 
 
 def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optional[Stage] = None,
-           objects: Optional[Literal["node", "triangle"]] = None, margin: Optional[float] = None, padding: Optional[PathLike] = None,
-           adjacent: Optional[Literal["beyond_shared", "beyond-shared", "exclude", "include"]] = None,
-           max_contacts: Optional[int] = None, tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None,
-           chord: Optional[float] = None, min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None,
+           objects: Optional[Literal["node", "triangle"]] = None, reader: Optional[str] = None,
+           include_type: Union[None, str, Sequence[str]] = None, margin: Optional[float] = None, padding: Optional[PathLike] = None,
+           adjacent: Optional[Literal["beyond_shared", "beyond-shared", "exclude", "include"]] = None, max_contacts: Optional[int] = None,
+           tolerance: Optional[float] = None, duplicate_tolerance: Optional[float] = None, chord: Optional[float] = None,
+           min_depth: Optional[float] = None, classes: Optional[str] = None, weld: Optional[float] = None,
            exclude: Optional[PathLike] = None, same_parent: Optional[Literal["include", "exclude"]] = None,
            baseline: Optional[PathLike] = None, statuses: Optional[PathLike] = None, report: Optional[PathLike] = None,
            up: Optional[Literal["y", "z"]] = None, unit: Optional[str] = None, events: bool = False,
@@ -146,6 +149,10 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
         How far down the pipeline. Default: pairs for boxes, objects for meshes.
     objects : {"node", "triangle"}, optional
         What counts as one object of a mesh file.
+    reader : str, optional
+        Command that reads the files and writes a model stream.
+    include_type : str or sequence of str, optional
+        Types of IFC elements that are read in addition, such as ``"IfcSpace"``.
     margin, padding
         Largest gap at which a pair counts; file with the clearance of each object.
     adjacent, max_contacts, tolerance, duplicate_tolerance, chord, min_depth, classes, weld
@@ -181,7 +188,7 @@ def detect(*inputs: PathLike, against: Optional[PathLike] = None, stage: Optiona
     if isinstance(adjacent, str):
         options["adjacent"] = adjacent.replace("_", "-")
     with tempfile.TemporaryDirectory(prefix="octopair-") as folder:
-        form = ".csv" if events else ".jsonl" if _has_shapes(files) and stage != "pairs" else ".npy"
+        form = ".csv" if events else ".jsonl" if (reader is not None or _has_shapes(files)) and stage != "pairs" else ".npy"
         output, stats = os.path.join(folder, "found" + form), os.path.join(folder, "stats.json")
         arguments = [argument for name, value in options.items() for argument in _option(name, value)]
         _run(["detect", *files, *arguments, "--quiet", "--output", output, "--stats", stats])

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <utility>
 
-#include "cli/ifc_model.hpp"
+#include "cli/ifc_storey.hpp"
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -15,13 +15,13 @@ namespace {
 class Identity : public ProgramTest {
 protected:
     /// A long wall that meets two cross walls and a pipe.
-    static IfcModel building() {
+    static IfcStorey building() {
         return {{{"00000000000000000000W1", "North", {0, 0, 0}, {10, 0.2, 3}},
                  {"00000000000000000000W2", "West", {-3, 1, 0}, {0.2, 3, 3}},
                  {"00000000000000000000W3", "East", {3, 1, 0}, {0.2, 3, 3}},
                  {"00000000000000000000P1", "Pipe", {0, 0, 1}, {0.1, 1, 0.1}, "IFCBUILDINGELEMENTPROXY"}}};
     }
-    void write(const std::string& name, const IfcModel& model) const { write_file(file(name), model.text()); }
+    void write(const std::string& name, const IfcStorey& model) const { write_file(file(name), model.text()); }
     /// Finds the collisions of `inputs`, compared with old.jsonl. Returns the changes from the summary.
     std::string changes(const std::string& inputs) const {
         const Outcome outcome = run("detect " + inputs + " --baseline old.jsonl --output new.jsonl");
@@ -43,11 +43,11 @@ protected:
 TEST_F(Identity, RenamedElementsAndStoreysAreTheSame) {
     write("v1.ifc", building());
     make_old("v1.ifc");
-    IfcModel wall = building();
+    IfcStorey wall = building();
     wall.boxes[0].name = "North facade";
     write("v2.ifc", wall);
     EXPECT_EQ(changes("v2.ifc"), "0 new, 3 same, 0 gone");
-    IfcModel storey = building();
+    IfcStorey storey = building();
     storey.storey = "Ground floor";
     write("v2.ifc", storey);
     EXPECT_EQ(changes("v2.ifc"), "0 new, 3 same, 0 gone");
@@ -93,7 +93,7 @@ TEST_F(Identity, RenamedFilesAreTheSame) {
 }
 
 TEST_F(Identity, SwappedInputsAreTheSame) {
-    IfcModel pipes = building(), walls = building();
+    IfcStorey pipes = building(), walls = building();
     pipes.boxes.erase(pipes.boxes.begin(), pipes.boxes.begin() + 3);
     pipes.project = "00000000000000000000P0";
     walls.boxes.pop_back();
@@ -114,7 +114,7 @@ TEST_F(Identity, SwappedInputsAreTheSame) {
 }
 
 TEST_F(Identity, CopiesWithOneIdStayApart) {
-    IfcModel copied = building();
+    IfcStorey copied = building();
     copied.boxes[2].id = copied.boxes[1].id;
     write("v1.ifc", copied);
     make_old("v1.ifc");
@@ -133,7 +133,7 @@ TEST_F(Identity, ResultsWithoutKeysAreBaselines) {
     make_old("v1.ifc");
     ASSERT_EQ(shell(R"(sed -i 's/"key":"[^"]*",//' old.jsonl; ! grep key old.jsonl)").status, 0);
     EXPECT_EQ(changes("v1.ifc"), "0 new, 3 same, 0 gone");
-    IfcModel renamed = building();
+    IfcStorey renamed = building();
     renamed.boxes[1].name = "West facade";
     write("v1.ifc", renamed);
     EXPECT_EQ(changes("v1.ifc"), "1 new, 2 same, 1 gone");

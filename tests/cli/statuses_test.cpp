@@ -6,7 +6,7 @@
 #include <span>
 #include <tuple>
 
-#include "cli/ifc_model.hpp"
+#include "cli/ifc_storey.hpp"
 #include "cli/program.hpp"
 
 namespace octopair::test {
@@ -19,15 +19,15 @@ using nlohmann::json;
 class Statuses : public ProgramTest {
 protected:
     /// A floor with columns in it, and a beam on the first two columns.
-    static IfcModel building() {
+    static IfcStorey building() {
         return {{{"00000000000000000000F1", "Floor", {0, 0, 0}, {20, 4, 0.2}, "IFCSLAB"},
                  {"00000000000000000000C1", "C1", {-4, 0, 0.1}, {0.3, 0.3, 3}, "IFCCOLUMN"},
                  {"00000000000000000000C2", "C2", {-2, 0, 0.1}, {0.3, 0.3, 3}, "IFCCOLUMN"},
                  {"00000000000000000000C3", "C3", {2, 0, 0.1}, {0.3, 0.3, 3}, "IFCCOLUMN"},
                  {"00000000000000000000B1", "Beam", {-3, 0, 3}, {3, 0.2, 0.3}, "IFCBEAM"}}};
     }
-    static IfcBox& box(IfcModel& model, const std::string& name) {
-        for (IfcBox& one : model.boxes) {
+    static IfcElement& box(IfcStorey& model, const std::string& name) {
+        for (IfcElement& one : model.boxes) {
             if (one.name == name) return one;
         }
         throw std::runtime_error("no box " + name);
@@ -36,7 +36,7 @@ protected:
         const std::string prefix = "0000000000000000000001/00000000000000000000";
         return prefix + a + " | " + prefix + b;
     }
-    void write(const IfcModel& model) const { write_file(file("model.ifc"), model.text()); }
+    void write(const IfcStorey& model) const { write_file(file("model.ifc"), model.text()); }
     Outcome detect(const std::string& more = "", const std::string& output = "r.jsonl") const {
         return run("detect model.ifc --stage features --statuses s.json --stats t.json --output " + output + " " +
                    more);
@@ -71,7 +71,7 @@ using Words = std::map<std::string, std::string>;
 
 /// Five versions of a model, with what people decide after each.
 TEST_F(Statuses, AMonthOfVersions) {
-    IfcModel model = building();
+    IfcStorey model = building();
     write(model);
     ASSERT_EQ(detect().status, 0);
     EXPECT_EQ(statuses(),
@@ -104,7 +104,7 @@ TEST_F(Statuses, AMonthOfVersions) {
                                  {"C3 F1", "resolved"}}));
 
     // Version 4: the beam is back, and there is a new pipe in the first column.
-    IfcModel first = building();
+    IfcStorey first = building();
     box(model, "Beam") = box(first, "Beam");
     model.boxes.push_back({"00000000000000000000P1", "Pipe", {-4, 0, 1}, {0.1, 2, 0.1}, "IFCBUILDINGELEMENTPROXY"});
     write(model);
@@ -207,8 +207,8 @@ TEST_F(Statuses, RunsThatFailChangeNothing) {
     ASSERT_EQ(detect().status, 0);
     decide(key("C1", "F1"), "approved");
     const std::string before = content("s.json");
-    IfcModel away = building();
-    for (IfcBox& one : away.boxes) one.at[1] += 10 * one.at[0];
+    IfcStorey away = building();
+    for (IfcElement& one : away.boxes) one.at[1] += 10 * one.at[0];
     write(away);
     EXPECT_EQ(run("detect model.ifc --stage features --statuses s.json --output /dev/full").status, 4);
     EXPECT_EQ(content("s.json"), before);
@@ -240,7 +240,7 @@ TEST_F(Statuses, WhatOptionsLeaveOutStays) {
         ASSERT_EQ(detect(more).status, 0) << more;
         EXPECT_EQ(statuses(), before) << more;
     }
-    IfcModel away = building();
+    IfcStorey away = building();
     box(away, "C1").at[0] = 100;
     write(away);
     ASSERT_EQ(detect("--classes touching").status, 0);
@@ -303,7 +303,7 @@ TEST_F(Statuses, BelongToTheOptionsThatSayWhatACollisionIs) {
 }
 
 TEST_F(Statuses, NearObjectsThatMeetAreNew) {
-    IfcModel model = building();
+    IfcStorey model = building();
     box(model, "Beam").at[2] = 3.2;
     write(model);
     ASSERT_EQ(detect("--margin 0.2").status, 0);
@@ -333,7 +333,7 @@ protected:
 };
 
 TEST_F(Bcf, HasATopicForEachCollision) {
-    IfcModel model = building();
+    IfcStorey model = building();
     model.unit = ".MILLI.";
     model.units_a_metre = 1000;
     box(model, "C1").name = "C<1> & \"co\"";
@@ -383,7 +383,7 @@ TEST_F(Bcf, CamerasLookAtContacts) {
 }
 
 TEST_F(Bcf, HasTheSameBytesAndGuidsFromRunToRun) {
-    IfcModel model = building();
+    IfcStorey model = building();
     write(model);
     ASSERT_EQ(detect("--threads 1", "r.bcf").status, 0);
     const std::string bytes = content("r.bcf");
@@ -406,7 +406,7 @@ TEST_F(Bcf, HasTheSameBytesAndGuidsFromRunToRun) {
 
 /// An element with many collisions has one topic for all of them.
 TEST_F(Bcf, AnElementThatMeetsManyIsOneTopic) {
-    IfcModel model = building();
+    IfcStorey model = building();
     for (int i = 0; i < 9; ++i) {
         model.boxes.push_back({"0000000000000000000D0" + std::to_string(i),
                                "D" + std::to_string(i),

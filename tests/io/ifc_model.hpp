@@ -43,8 +43,14 @@ public:
         data_ += fmt::format("#{}={};\n", ++last_, instance);
         return last_;
     }
-    /// Adds an element with a box as its body. Returns its number.
-    int add_box(const std::string& type, const std::string& word, const IfcBox& box) {
+    /// Puts the elements into a storey of the building, instead of the building itself.
+    void add_storey(const std::string& name) {
+        container_ =
+            add(fmt::format("IFCBUILDINGSTOREY('{}',#5,'{}',$,$,#12,$,$,.ELEMENT.,0.)", ifc_id("storey"), name));
+        add(fmt::format("IFCRELAGGREGATES('{}',#5,$,$,#13,(#{}))", ifc_id("storeys"), container_));
+    }
+    /// Adds an element with a box as its body, named by `word` or, if given, `name`. Returns its number.
+    int add_box(const std::string& type, const std::string& word, const IfcBox& box, const std::string& name = "") {
         const int corner = add(fmt::format("IFCCARTESIANPOINT(({:.9f},{:.9f}))", (box[3] - box[0]) / 2 + box[0],
                                            (box[4] - box[1]) / 2 + box[1]));
         const int axes = add(fmt::format("IFCAXIS2PLACEMENT2D(#{},$)", corner));
@@ -53,14 +59,14 @@ public:
         const int low = add(fmt::format("IFCCARTESIANPOINT((0.,0.,{:.9f}))", box[2]));
         const int place = add(fmt::format("IFCAXIS2PLACEMENT3D(#{},$,$)", low));
         const int solid = add(fmt::format("IFCEXTRUDEDAREASOLID(#{},#{},#15,{:.9f})", profile, place, box[5] - box[2]));
-        return add_element(type, word, solid);
+        return add_element(type, word, solid, name);
     }
-    /// Adds an element with any item as its body. Returns its number.
-    int add_element(const std::string& type, const std::string& word, int item) {
+    /// Adds an element with any item as its body, named like a box. Returns its number.
+    int add_element(const std::string& type, const std::string& word, int item, const std::string& name = "") {
         const int body = add(fmt::format("IFCSHAPEREPRESENTATION(#10,'Body','SweptSolid',(#{}))", item));
         const int shape = add(fmt::format("IFCPRODUCTDEFINITIONSHAPE($,$,(#{}))", body));
-        const int element =
-            add(fmt::format("{}('{}',#5,'{}',$,$,#12,#{},${})", type, ifc_id(word), word, shape, more_of(type)));
+        const int element = add(fmt::format("{}('{}',#5,'{}',$,$,#12,#{},${})", type, ifc_id(word),
+                                            name.empty() ? word : name, shape, more_of(type)));
         contained_.push_back(fmt::format("#{}", element));
         return element;
     }
@@ -92,8 +98,8 @@ public:
         return fmt::format(
             "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
             "FILE_SCHEMA(('IFC2X3'));\nENDSEC;\nDATA;\n{}"
-            "#{}=IFCRELCONTAINEDINSPATIALSTRUCTURE('{}',#5,$,$,({}),#13);\nENDSEC;\nEND-ISO-10303-21;\n",
-            data_, last_ + 1, ifc_id("contained"), fmt::join(contained_, ","));
+            "#{}=IFCRELCONTAINEDINSPATIALSTRUCTURE('{}',#5,$,$,({}),#{});\nENDSEC;\nEND-ISO-10303-21;\n",
+            data_, last_ + 1, ifc_id("contained"), fmt::join(contained_, ","), container_);
     }
 
 private:
@@ -110,6 +116,7 @@ private:
 
     std::string data_;
     int last_ = 0;
+    int container_ = 13;
     std::vector<std::string> contained_;
 };
 

@@ -83,6 +83,39 @@ def test_detects_meshes(tmp_path):
     assert len(op.detect(path, exclude=rules, stage="objects").pairs) == 0
 
 
+# A reader that gives each file the same triangle.
+READER = """
+import struct, sys
+def text(word): return struct.pack("<I", len(word)) + word.encode()
+def record(kind, content): sys.stdout.buffer.write(struct.pack("<IQ", kind, len(content)) + content)
+sys.stdout.buffer.write(b"OPMODEL\\n" + struct.pack("<I", 1))
+record(1, text("m") + text("z") + text(""))
+record(2, struct.pack("<dII9d3I", 0, 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2))
+record(3, struct.pack("<I16d", 0, *[float(i % 5 == 0) for i in range(16)]) + 9 * text("") + struct.pack("<I", 0))
+record(7, struct.pack("<QQII", 1, 1, 0, 0))
+"""
+
+
+def test_detects_by_a_reader(tmp_path):
+    (tmp_path / "reader.py").write_text(READER)
+    for name in ("a.npy", "b.npy"):
+        (tmp_path / name).write_text("no array")
+    found = op.detect(tmp_path / "a.npy", tmp_path / "b.npy", reader=f"{sys.executable} {tmp_path / 'reader.py'}")
+    assert found.pairs.tolist() == [[0, 1]] and found.collisions is not None
+    with pytest.raises(op.InputError, match="status 1"):
+        op.detect(tmp_path / "a.npy", reader="false")
+
+
+def test_gives_an_option_for_each_element_of_a_list(monkeypatch, tmp_path):
+    shown = tmp_path / "program"
+    shown.write_text('#!/bin/sh\necho "octopair: $*" >&2\nexit 3\n')
+    shown.chmod(0o755)
+    monkeypatch.setenv("OCTOPAIR_PROGRAM", str(shown))
+    for types, words in ((["IfcSpace", "IfcGrid"], "--include-type=IfcSpace --include-type=IfcGrid"), ("IfcSpace", "--include-type=IfcSpace ")):
+        with pytest.raises(op.InputError, match=words):
+            op.detect("a.ifc", include_type=types)
+
+
 def test_detect_has_the_options_of_the_command():
     shown = subprocess.run([program_path(), "detect", "--help"], capture_output=True, text=True, check=True).stdout
     options = set(re.findall(r"^  (?:-\w, )?--([a-z-]+)", shown, re.MULTILINE))

@@ -22,6 +22,7 @@
 #include "base/descriptor.hpp"
 #include "io/files/failure.hpp"
 #include "io/files/input_file.hpp"
+#include "io/formats/unit_change.hpp"
 #include "io/meshes/stream/model_stream.hpp"
 
 namespace octopair::io {
