@@ -2,10 +2,13 @@
 //
 //     octopair-step [--chord MM] FILE
 //
-// Each solid of a part is a shape, and so are all its faces outside of solids together. Its curved faces become triangles that are at most the chord error away:
-// 0.1 mm, or 1e-4 of the size of a part that is smaller than 1 m. Instances of a part share its shape.
+// Each solid of a part is a shape, and so is each connected shell outside of solids. Curved faces become triangles that are at most the
+// chord error away: 0.1 mm, or 1e-4 of the size of a part that is smaller than 1 m. Instances of a part share its shapes.
 #include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepLib.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <IGESCAFControl_Reader.hxx>
@@ -13,6 +16,7 @@
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
@@ -20,10 +24,16 @@
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
+#include <TopoDS_Iterator.hxx>
+#include <TopoDS_Shape.hxx>
+#include <TopoDS_Solid.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
@@ -32,6 +42,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -42,6 +53,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -122,52 +134,138 @@ bool is_made_up(const std::string& name) {
            std::any_of(kinds.begin(), kinds.end(), [&](const char* kind) { return name == kind; });
 }
 
-/// Joins vertices with equal coordinates.
+/// Joins the triangles of faces. Vertices on a common edge are one, because they are numbered by the edge: their coordinates may differ by
+/// rounding. Vertices with equal coordinates are one, too.
 class WeldedMesh {
 public:
-    std::uint32_t number_of(const Point& point) {
-        const auto [at, is_new] = numbers_.try_emplace(point, std::uint32_t(shape.vertices.size()));
-        if (is_new) shape.vertices.push_back(point);
-        return at->second;
-    }
-    void add(const std::array<std::uint32_t, 3>& corners) {
-        if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
-            shape.triangles.push_back(corners);
+    /// Adds the triangles of a face. Returns false if it has none.
+    bool add(const TopoDS_Face& face) {
+        TopLoc_Location location;
+        const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+        if (triangulation.IsNull()) return false;
+        const std::vector<std::uint32_t> numbers = numbers_of(face, triangulation, location);
+        const bool turned = (face.Orientation() == TopAbs_REVERSED) != location.Transformation().IsNegative();
+        for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
+            int a = 0, b = 0, c = 0;
+            triangulation->Triangle(i).Get(a, b, c);
+            if (turned) std::swap(b, c);
+            add_triangle({numbers[std::size_t(a)], numbers[std::size_t(b)], numbers[std::size_t(c)]});
+        }
+        return true;
     }
 
     StreamedShape shape;
 
 private:
-    std::map<Point, std::uint32_t> numbers_;
+    static constexpr std::uint32_t unknown = 0xFFFFFFFF;
+
+    /// Returns the number of the vertex of each node. Nodes are numbered from 1.
+    std::vector<std::uint32_t> numbers_of(const TopoDS_Face& face, const Handle(Poly_Triangulation) & triangulation,
+                                          const TopLoc_Location& location) {
+        std::vector<std::uint32_t> numbers(std::size_t(triangulation->NbNodes()) + 1, unknown);
+        const auto number = [&](int node, std::uint32_t& known) {
+            std::uint32_t& own = numbers[std::size_t(node)];
+            if (own == unknown) own = known != unknown ? known : number_at(triangulation->Node(node).Transformed(location));
+            if (known == unknown) known = own;
+        };
+        for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
+            const TopoDS_Edge& edge = TopoDS::Edge(edges.Current());
+            const Handle(Poly_PolygonOnTriangulation) nodes = BRep_Tool::PolygonOnTriangulation(edge, triangulation, location);
+            if (nodes.IsNull()) continue;
+            std::vector<std::uint32_t>& inner = of_edges_[edge];
+            inner.resize(std::size_t(nodes->NbNodes()), unknown);
+            const TopoDS_Vertex first = TopExp::FirstVertex(edge), last = TopExp::LastVertex(edge);
+            for (int i = 1; i <= nodes->NbNodes(); ++i) {
+                const TopoDS_Vertex& end = i == 1 ? first : i == nodes->NbNodes() ? last : TopoDS_Vertex();
+                number(nodes->Node(i), end.IsNull() ? inner[std::size_t(i - 1)] : of_ends_.try_emplace(end, unknown).first->second);
+            }
+        }
+        for (int node = 1; node <= triangulation->NbNodes(); ++node) {
+            std::uint32_t unshared = unknown;
+            number(node, unshared);
+        }
+        return numbers;
+    }
+    std::uint32_t number_at(const gp_Pnt& point) {
+        const auto [at, is_new] =
+            at_points_.try_emplace({point.X() + 0.0, point.Y() + 0.0, point.Z() + 0.0}, std::uint32_t(shape.vertices.size()));
+        if (is_new) shape.vertices.push_back(at->first);
+        return at->second;
+    }
+    void add_triangle(const std::array<std::uint32_t, 3>& corners) {
+        if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+            shape.triangles.push_back(corners);
+    }
+
+    struct Hash {
+        std::size_t operator()(const TopoDS_Shape& part) const { return std::size_t(part.HashCode(INT_MAX)); }
+    };
+    struct Same {
+        bool operator()(const TopoDS_Shape& a, const TopoDS_Shape& b) const { return a.IsSame(b); }
+    };
+    std::unordered_map<TopoDS_Shape, std::vector<std::uint32_t>, Hash, Same> of_edges_;  // of the nodes of an edge, in order
+    std::unordered_map<TopoDS_Shape, std::uint32_t, Hash, Same> of_ends_;                 // of the ends of edges
+    std::map<Point, std::uint32_t> at_points_;
 };
 
-/// Adds the triangles of a face. Returns false if it has none.
-bool add_face(const TopoDS_Face& face, WeldedMesh& mesh) {
-    TopLoc_Location location;
-    const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-    if (triangulation.IsNull()) return false;
-    const gp_Trsf& place = location.Transformation();
-    std::vector<std::uint32_t> numbers;
-    for (int i = 1; i <= triangulation->NbNodes(); ++i) {
-        const gp_Pnt node = triangulation->Node(i).Transformed(place);
-        numbers.push_back(mesh.number_of({node.X() + 0.0, node.Y() + 0.0, node.Z() + 0.0}));
-    }
-    const bool turned = (face.Orientation() == TopAbs_REVERSED) != place.IsNegative();
-    for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
-        int a = 0, b = 0, c = 0;
-        triangulation->Triangle(i).Get(a, b, c);
-        if (turned) std::swap(b, c);
-        mesh.add({numbers[std::size_t(a - 1)], numbers[std::size_t(b - 1)], numbers[std::size_t(c - 1)]});
-    }
-    return true;
+double size_of(const TopoDS_Shape& shape) {
+    Bnd_Box box;
+    BRepBndLib::Add(shape, box);
+    return box.IsVoid() ? 0 : std::sqrt(box.SquareExtent());
 }
 
 double chord_for(const TopoDS_Shape& shape, const Options& options) {
-    if (options.chord > 0) return options.chord;
-    Bnd_Box box;
-    BRepBndLib::Add(shape, box);
-    if (box.IsVoid()) return 0.1;
-    return std::min(0.1, 1e-4 * std::sqrt(box.SquareExtent()));
+    return options.chord > 0 ? options.chord : std::min(0.1, 1e-4 * size_of(shape));
+}
+
+/// Returns the largest gap, in mm, across which faces outside of solids are taken for neighbours. It closes what files of IGES leave open.
+double gap_for(const TopoDS_Shape& shape) { return std::min(0.01, 1e-5 * size_of(shape)); }
+
+/// Joins faces at their common edges. Returns the connected shells, with outward normals if they are closed.
+std::vector<TopoDS_Shape> sew(const std::vector<TopoDS_Shape>& faces, double gap) {
+    BRepBuilderAPI_Sewing sewing(gap);
+    for (const TopoDS_Shape& face : faces) sewing.Add(face);
+    sewing.Perform();
+    const TopoDS_Shape sewn = sewing.SewedShape();
+    std::vector<TopoDS_Shape> shells;
+    for (TopExp_Explorer shell(sewn, TopAbs_SHELL); shell.More(); shell.Next()) {
+        if (!BRep_Tool::IsClosed(shell.Current())) {
+            shells.push_back(shell.Current());
+            continue;
+        }
+        TopoDS_Solid solid;
+        BRep_Builder().MakeSolid(solid);
+        BRep_Builder().Add(solid, shell.Current());
+        BRepLib::OrientClosedSolid(solid);
+        shells.push_back(solid);
+    }
+    for (TopExp_Explorer face(sewn, TopAbs_FACE, TopAbs_SHELL); face.More(); face.Next())
+        shells.push_back(face.Current());
+    return shells;
+}
+
+/// Returns the connected shells of the faces outside of solids. Faces in different groups of a file are never joined, for two parts may
+/// have edges in common where they touch.
+std::vector<TopoDS_Shape> shells_outside_of_solids(const TopoDS_Shape& shape) {
+    std::vector<TopoDS_Shape> shells, faces;
+    if (shape.ShapeType() == TopAbs_FACE) return {shape};
+    if (shape.ShapeType() == TopAbs_SOLID) return {};
+    for (TopoDS_Iterator part(shape); part.More(); part.Next()) {
+        switch (part.Value().ShapeType()) {
+            case TopAbs_COMPOUND: {
+                std::vector<TopoDS_Shape> inner = shells_outside_of_solids(part.Value());
+                shells.insert(shells.end(), inner.begin(), inner.end());
+                break;
+            }
+            case TopAbs_SHELL:
+            case TopAbs_FACE: faces.push_back(part.Value()); break;
+            default: break;
+        }
+    }
+    if (faces.empty()) return shells;
+    std::vector<TopoDS_Shape> sewn = sew(faces, gap_for(shape));
+    shells.insert(shells.end(), sewn.begin(), sewn.end());
+    return shells;
 }
 
 /// Writes the occurrences of all parts.
@@ -236,28 +334,26 @@ private:
         }
     }
 
-    /// Returns the shapes of a part: its solids, and its shells and faces outside of solids as one.
+    /// Returns the shapes of a part: its solids, and its connected shells outside of solids.
     const std::vector<std::uint32_t>& shapes_of(const TDF_Label& part, const Names& names) {
         const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(part);
         TCollection_AsciiString entry;
         TDF_Tool::Entry(part, entry);
         const auto [at, is_new] = written_.try_emplace(entry.ToCString());
         if (!is_new) return at->second;
-        const double chord = chord_for(shape, options_);
-        BRepMesh_IncrementalMesh(shape, chord, false, 0.3, false);
         int missing = 0;
-        const auto write = [&](TopExp_Explorer faces) {
+        const auto write = [&](const TopoDS_Shape& piece, double gap) {
+            const double chord = chord_for(piece, options_);
+            BRepMesh_IncrementalMesh(piece, chord, false, 0.3, false);
             WeldedMesh mesh;
-            for (; faces.More(); faces.Next()) missing += add_face(TopoDS::Face(faces.Current()), mesh) ? 0 : 1;
+            for (TopExp_Explorer faces(piece, TopAbs_FACE); faces.More(); faces.Next())
+                missing += mesh.add(TopoDS::Face(faces.Current())) ? 0 : 1;
             if (mesh.shape.triangles.empty()) return;
-            mesh.shape.error = chord;
+            mesh.shape.error = chord + gap;
             at->second.push_back(writer_.shape(mesh.shape));
         };
-        for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next())
-            write(TopExp_Explorer(solid.Current(), TopAbs_FACE));
-        if (at->second.empty())
-            writer_.warning("'" + names.path + "' has no solid: all its faces are one object");
-        write(TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID));
+        for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next()) write(solid.Current(), 0);
+        for (const TopoDS_Shape& shell : shells_outside_of_solids(shape)) write(shell, gap_for(shape));
         if (missing > 0) {
             writer_.warning("'" + names.path + "' lacks " + std::to_string(missing) +
                             " faces, which Open CASCADE cannot triangulate");

@@ -25,11 +25,11 @@ using Filters = std::vector<std::unique_ptr<Filter>>;
 /// Exception that ends an engine's search: Options::limit collisions have been delivered, and one more was found.
 struct LimitReached {};
 
-/// Chooses the number of pairs of the next block from measured times.
+/// Chooses the number of pairs of the next block from measured times. The first block is as small as the filters allow.
 class BlockSize {
 public:
     BlockSize(std::size_t least, std::size_t most)
-        : least_(std::min(least, most)), most_(most), pairs_(std::clamp<std::size_t>(first, least_, most)) {}
+        : least_(std::min(least, most)), most_(most), pairs_(least_) {}
 
     std::size_t pairs() const { return pairs_; }
 
@@ -38,16 +38,20 @@ public:
         if (pairs == 0) return;
         const double a_pair = seconds / double(pairs);
         seconds_ = seconds_ < 0 ? a_pair : 0.75 * seconds_ + 0.25 * a_pair;
-        const double fitting = aim / std::max(seconds_, 1e-12);
+        const double fitting = std::min(aim / std::max(seconds_, 1e-12), double(measured_ == 0 ? few : most_));
         pairs_ = std::size_t(std::clamp(fitting, double(least_), double(most_)));
+        measured_ += pairs;
     }
 
+    bool is_measured() const { return measured_ > 0; }
+
 private:
-    static constexpr std::size_t first = 64;
-    static constexpr double aim = 2e-4;  // intended seconds for a block; passing it to a thread takes far less
+    static constexpr std::size_t few = 64;  // after one pair, which may be easier than others
+    static constexpr double aim = 2e-4;     // intended seconds for a block; passing it to a thread takes far less
 
     std::size_t least_, most_, pairs_;
     double seconds_ = -1;  // moving average of the time for a pair; negative: not measured yet
+    std::uint64_t measured_ = 0;  // number of pairs measured
 };
 
 /// One call. Takes pairs as the engine's sink, applies the filters, and passes the results to the caller's sink. apply() runs on several
@@ -131,6 +135,8 @@ private:
     void end_block() {
         filling_ = nullptr;
         ring_.add();
+        // The first pair tells whether few pairs are worth several threads.
+        if (!size_.is_measured()) ring_.finish();
     }
 
     /// Applies all filters to a block. Runs on any thread.

@@ -295,13 +295,15 @@ TEST(Pipeline, SinkIsCalledOnTheCallingThread) {
     EXPECT_EQ(callers, std::set{std::this_thread::get_id()});
 }
 
-/// Holds each batch until `threads` batches are held at the same time, or until a timeout of 60 seconds.
+/// Holds each batch but the first, whose time is measured alone, until `threads` batches are held at the same time, or until a timeout of
+/// 60 seconds.
 class Meeting final : public Filter {
 public:
     explicit Meeting(unsigned threads) : threads_(threads) {}
     std::string_view name() const override { return "meeting"; }
     void apply(Batch& batch) const override {
         std::unique_lock lock(mutex_);
+        if (std::exchange(first_, false)) return std::this_thread::sleep_for(std::chrono::milliseconds(1));  // pairs are costly
         ++present_;
         if (present_ >= threads_) met_ = true;
         changed_.notify_all();
@@ -317,7 +319,7 @@ private:
     mutable std::mutex mutex_;
     mutable std::condition_variable changed_;
     mutable unsigned present_ = 0;
-    mutable bool met_ = false, alone_ = false;
+    mutable bool met_ = false, alone_ = false, first_ = true;
 };
 
 /// Tests that filters run on all threads of the pipeline. The engine's threads may be blocked inside the search.
@@ -332,6 +334,16 @@ TEST(Pipeline, FiltersOnAllItsThreadsAtOnce) {
         pipeline.run(*make_local_engine(2), all_of(boxes), {}, options);
         EXPECT_TRUE(meeting.met());
     }
+}
+
+TEST(Pipeline, FewCostlyPairsAreOnAllThreads) {
+    const std::vector<Box3f> boxes(4, Box3f{{0, 0, 0}, {1, 1, 1}});
+    Pipeline pipeline(3);
+    auto filter = std::make_unique<Meeting>(3);
+    const Meeting& meeting = *filter;
+    pipeline.add(std::move(filter));
+    EXPECT_EQ(pipeline.run(*make_local_engine(1), all_of(boxes), {}).collisions, 6u);
+    EXPECT_TRUE(meeting.met());
 }
 
 TEST(Pipeline, HasTheLimitOfThreadsOfAnEngine) {

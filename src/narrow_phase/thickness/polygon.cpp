@@ -13,6 +13,7 @@ template <typename Height>
 Polygon part_below(const Polygon& polygon, const Height& height) {
     Polygon part;
     const std::size_t count = polygon.corners.size();
+    part.corners.reserve(count + 1);
     for (std::size_t i = 0; i < count; ++i) {
         const Point3d &from = polygon.corners[i], &to = polygon.corners[(i + 1) % count];
         const double at = height(from), next = height(to);
@@ -73,8 +74,15 @@ Polygon clipped(const Triangle3d& triangle, const Box3d& box) {
     Polygon polygon;
     polygon.corners.assign(triangle.begin(), triangle.end());
     for (int axis = 0; axis < 3 && !polygon.empty(); ++axis) {
-        polygon = part_below(polygon, [&](const Point3d& corner) { return box.min[axis] - corner[axis]; });
-        polygon = part_below(polygon, [&](const Point3d& corner) { return corner[axis] - box.max[axis]; });
+        double low = polygon.corners[0][axis], high = low;
+        for (const Point3d& corner : polygon.corners) {
+            low = std::min(low, corner[axis]);
+            high = std::max(high, corner[axis]);
+        }
+        if (low < box.min[axis])
+            polygon = part_below(polygon, [&](const Point3d& corner) { return box.min[axis] - corner[axis]; });
+        if (high > box.max[axis])
+            polygon = part_below(polygon, [&](const Point3d& corner) { return corner[axis] - box.max[axis]; });
     }
     return polygon;
 }
