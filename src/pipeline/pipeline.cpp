@@ -28,8 +28,7 @@ struct LimitReached {};
 /// Chooses the number of pairs of the next block from measured times. The first block is as small as the filters allow.
 class BlockSize {
 public:
-    BlockSize(std::size_t least, std::size_t most)
-        : least_(std::min(least, most)), most_(most), pairs_(least_) {}
+    BlockSize(std::size_t least, std::size_t most) : least_(std::min(least, most)), most_(most), pairs_(least_) {}
 
     std::size_t pairs() const { return pairs_; }
 
@@ -50,7 +49,7 @@ private:
     static constexpr double aim = 2e-4;     // intended seconds for a block; passing it to a thread takes far less
 
     std::size_t least_, most_, pairs_;
-    double seconds_ = -1;  // moving average of the time for a pair; negative: not measured yet
+    double seconds_ = -1;         // moving average of the time for a pair; negative: not measured yet
     std::uint64_t measured_ = 0;  // number of pairs measured
 };
 

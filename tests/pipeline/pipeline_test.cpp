@@ -303,7 +303,8 @@ public:
     std::string_view name() const override { return "meeting"; }
     void apply(Batch& batch) const override {
         std::unique_lock lock(mutex_);
-        if (std::exchange(first_, false)) return std::this_thread::sleep_for(std::chrono::milliseconds(1));  // pairs are costly
+        if (std::exchange(first_, false))
+            return std::this_thread::sleep_for(std::chrono::milliseconds(1));  // pairs are costly
         ++present_;
         if (present_ >= threads_) met_ = true;
         changed_.notify_all();

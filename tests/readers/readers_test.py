@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Tests octopair-ifc and octopair-step through octopair.
 
-    readers_test.py PROGRAM READERS     PROGRAM: octopair; READERS: the folder of the readers
+    readers_test.py PROGRAM READERS SAMPLES     PROGRAM: octopair; READERS: the folder of the readers; SAMPLES: the program of step_samples.cpp
 
-IFC files are written by ifc_writer.py, which states their coordinates. as1_pe_203.stp.xz and floors_2x3.ifc.xz are models of others (README.md).
+IFC files are written by ifc_writer.py, which states their coordinates. Samples of STEP and IGES are written by Open CASCADE, whose exact
+geometry has other volumes than the triangles of the reader. as1_pe_203.stp.xz and floors_2x3.ifc.xz are models of others (README.md).
 """
 import csv
 import json
 import lzma
+import math
 import os
 import pathlib
 import re
@@ -18,9 +20,10 @@ import unittest
 import zipfile
 
 from ifc_writer import IfcWriter
+from model_stream import read_stream
 
 HERE = pathlib.Path(__file__).resolve().parent
-PROGRAM, READERS = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+PROGRAM, READERS, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 TRIANGLES = [triangle for a, b, c, d in FACES for triangle in ((a, b, c), (a, c, d))]
@@ -77,6 +80,9 @@ class Readers(unittest.TestCase):
         with open(self.folder / "found.csv", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
+    def stream(self, reader, *words):
+        return subprocess.run([READERS / reader, *words], capture_output=True, check=True, cwd=self.folder).stdout
+
     def write(self, name, text):
         (self.folder / name).write_text(text, encoding="utf-8")
 
@@ -103,13 +109,9 @@ class Readers(unittest.TestCase):
         self.assertEqual(shapes.stdout, "")
         names = {row["a_label"] for row in map(json.loads, (self.folder / "all.jsonl").read_text(encoding="utf-8").splitlines())}
         self.assertIn("Büro", names)
-        stream = subprocess.run([READERS / "octopair-ifc", "house.ifc"], capture_output=True, check=True, cwd=self.folder).stdout
-        kinds = []
-        at = 12
-        while at < len(stream):
-            kinds.append(int.from_bytes(stream[at:at + 4], "little"))
-            at += 12 + int.from_bytes(stream[at + 4:at + 12], "little")
-        self.assertEqual((kinds.count(2), kinds.count(3)), (5, 6))
+        stream = self.stream("octopair-ifc", "house.ifc")
+        shapes, instances = read_stream(stream)
+        self.assertEqual((len(shapes), len(instances)), (5, 6))
         # The same stream, read from a file.
         (self.folder / "house.opmodel").write_bytes(stream)
         self.assertEqual(self.info("house.opmodel")["objects"], self.info("house.ifc")["objects"])
@@ -188,6 +190,64 @@ class Readers(unittest.TestCase):
         self.assertEqual({row["class"] for row in rows}, {"touching"})
         labels = {row[side] for row in rows for side in ("a_label", "b_label")}
         self.assertEqual({re.sub(r"\d+$", "", label.lower()) for label in labels} & {"bolt", "nut"}, {"bolt", "nut"}, labels)
+
+    def test_a_moved_bolt(self):
+        text = lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()
+        # The place of a bolt with its nut in its bracket, which occurs twice. Lengths are inches.
+        place = "#2410=CARTESIAN_POINT('',(0.E0,1.E1,2.E1));"
+        self.assertIn(place, text)
+        self.write("moved.stp", text.replace(place, f"#2410=CARTESIAN_POINT('',({1 / 25.4:.17f},1.E1,2.E1));"))
+        rows = self.rows("moved.stp", "--classes", "penetrating,contained,duplicate")
+        self.assertEqual(len(rows), 4)
+        for row in rows:
+            self.assertIn("BOLT", row["a_name"] + row["b_name"])
+            self.assertAlmostEqual(float(row["depth"]), 1, delta=0.001)
+
+    def test_samples_have_their_exact_volumes(self):
+        lines = subprocess.run([SAMPLES, self.folder], capture_output=True, text=True, check=True).stdout.splitlines()
+        wanted = [json.loads(line) for line in lines]
+        for name in ("ap203.step", "ap214.stp", "ap242.stp", "solids.igs", "surfaces.iges"):
+            with self.subTest(name):
+                facts = self.info(name)
+                self.assertEqual((facts["objects"], facts["open meshes"]), ("7 meshes", "0"))
+                shapes, instances = read_stream(self.stream("octopair-step", "--chord", "0.02", name))
+                left = list(wanted)
+                for instance in instances:
+                    shape = shapes[instance.shape]
+                    volume, middle = shape.volume_and_middle()
+                    middle = instance.place(middle)
+                    part = min(left, key=lambda one: math.dist(one["middle"], middle))
+                    left.remove(part)
+                    # The triangles are at most the error away from the surface.
+                    self.assertLess(abs(volume - part["volume"]), part["area"] * shape.error, part)
+                    self.assertLess(math.dist(part["middle"], middle), shape.error, part)
+                    if not name.startswith("s"):
+                        self.assertEqual(instance.name, part["name"])
+                self.assertEqual(left, [])
+        # Open CASCADE writes the names of some solids alone into IGES.
+        names = {instance.name for instance in read_stream(self.stream("octopair-step", "solids.igs"))[1]}
+        self.assertLessEqual({"Sample/Ball", "Sample/Ring", "Sample/Pin"}, names)
+        self.assertEqual(len(names), 7)
+
+    def test_chord(self):
+        subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)
+        counts = [sum(len(shape.triangles) for shape in read_stream(self.stream("octopair-step", *words, "ap203.step"))[0])
+                  for words in ((), ("--chord", "0.1"), ("--chord", "1"))]
+        self.assertEqual(counts, sorted(counts, reverse=True))
+        self.assertGreater(counts[0], 5 * counts[2])
+        self.run_program("detect", "ap203.step", "--stage", "features", "--chord", "0.5", "--quiet", "--stats", "s.json", "--output", "p.csv")
+        self.assertAlmostEqual(json.loads((self.folder / "s.json").read_text(encoding="utf-8"))["tolerance"], 1.0, places=12)
+
+    def test_lost_solids_are_counted(self):
+        text = lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()
+        shells = re.findall(r"#\d+=CLOSED_SHELL\([^;]*;", text)
+        self.assertEqual(len(shells), 5)
+        self.write("lost.stp", text.replace(shells[1], ""))  # of the bracket, which occurs twice
+        facts = self.info("lost.stp")
+        self.assertEqual((facts["objects"], facts["elements"]), ("16 meshes", "16 of 17 with geometry were read"))
+        shown = self.run_program("info", "lost.stp").stdout
+        self.assertIn("1 of 17 elements with geometry were not read: 1 solid, the first is #", shown)
+        self.assertIn("Open CASCADE finds 2 faults, so parts may be missing", shown)
 
     def test_missing_readers(self):
         self.write("as1.stp", "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('CONFIG_CONTROL_DESIGN'));\nENDSEC;\n")

@@ -1,0 +1,154 @@
+// Writes sample assemblies by Open CASCADE, and what its exact geometry says about their parts.
+//
+//     step_samples FOLDER
+//
+// Each file has the same assembly: a frame of two plates, one turned, and other parts beside them. Standard output: one JSON object per
+// part with its path, and, in mm, exact volume, area and middle. The reader has to find these again in each file.
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepGProp.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <GProp_GProps.hxx>
+#include <IGESCAFControl_Writer.hxx>
+#include <IGESControl_Controller.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Controller.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <gp_Ax2.hxx>
+#include <gp_Trsf.hxx>
+
+#include <cstdio>
+#include <string>
+
+namespace {
+
+TopoDS_Shape plate_with_holes() {
+    TopoDS_Shape plate = BRepPrimAPI_MakeBox(100, 60, 10);
+    for (const double x : {20., 80.}) {
+        const gp_Ax2 axis(gp_Pnt(x, 30, -1), gp::DZ());
+        plate = BRepAlgoAPI_Cut(plate, BRepPrimAPI_MakeCylinder(axis, 6, 12));
+    }
+    return plate;
+}
+
+TopoDS_Shape rounded_block() {
+    const TopoDS_Shape block = BRepPrimAPI_MakeBox(30, 20, 10);
+    BRepFilletAPI_MakeFillet fillet(block);
+    for (TopExp_Explorer edge(block, TopAbs_EDGE); edge.More(); edge.Next())
+        fillet.Add(2, TopoDS::Edge(edge.Current()));
+    return fillet.Shape();
+}
+
+gp_Trsf moved(double x, double y, double z, double turn = 0) {
+    gp_Trsf place;
+    if (turn != 0) place.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(1, 2, 3)), turn);
+    place.SetTranslationPart(gp_Vec(x, y, z));
+    return place;
+}
+
+/// An assembly of parts in one document.
+class Sample {
+public:
+    Sample() {
+        XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document_);
+        shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
+        const TDF_Label assembly = named(shapes_->NewShape(), "Sample");
+        const TDF_Label frame = named(shapes_->NewShape(), "Frame");
+        const TDF_Label plate = add_part("Plate", plate_with_holes());
+        put(frame, plate, "Plate", moved(0, 0, 0));
+        put(frame, plate, "High", moved(0, 0, 60, 0.5));
+        put(assembly, frame, "Frame", moved(1000, 0, 0, 0.25));
+        put(assembly, add_part("Block", rounded_block()), "Block", moved(0, 200, 0, 1));
+        put(assembly, add_part("Ball", BRepPrimAPI_MakeSphere(15)), "Ball", moved(0, 400, 0));
+        put(assembly, add_part("Ring", BRepPrimAPI_MakeTorus(30, 8)), "Ring", moved(0, 600, 0, 0.7));
+        put(assembly, add_part("Cone", BRepPrimAPI_MakeCone(20, 5, 40)), "Cone", moved(0, 800, 0));
+        put(assembly, add_part("Pin", BRepPrimAPI_MakeCylinder(0.5, 3)), "Pin", moved(0, 900, 0));
+        shapes_->UpdateAssemblies();
+        print(assembly, "Sample", gp_Trsf());
+    }
+
+    const Handle(TDocStd_Document) & document() const { return document_; }
+
+private:
+    static TDF_Label named(const TDF_Label& label, const char* name) {
+        TDataStd_Name::Set(label, name);
+        return label;
+    }
+    TDF_Label add_part(const char* name, const TopoDS_Shape& shape) {
+        return named(shapes_->AddShape(shape, false), name);
+    }
+    void put(const TDF_Label& assembly, const TDF_Label& part, const char* name, const gp_Trsf& place) {
+        named(shapes_->AddComponent(assembly, part, TopLoc_Location(place)), name);
+    }
+    void print(const TDF_Label& label, const std::string& path, const gp_Trsf& place) const {
+        TDF_LabelSequence components;
+        XCAFDoc_ShapeTool::GetComponents(label, components);
+        for (int i = 1; i <= components.Length(); ++i) {
+            const TDF_Label component = components.Value(i);
+            TDF_Label part;
+            (void)XCAFDoc_ShapeTool::GetReferredShape(component, part);
+            Handle(TDataStd_Name) name;
+            (void)component.FindAttribute(TDataStd_Name::GetID(), name);
+            const std::string below = path + "/" + TCollection_AsciiString(name->Get()).ToCString();
+            const gp_Trsf here = place * XCAFDoc_ShapeTool::GetLocation(component).Transformation();
+            if (XCAFDoc_ShapeTool::IsAssembly(part)) {
+                print(part, below, here);
+                continue;
+            }
+            GProp_GProps volume, area;
+            BRepGProp::VolumeProperties(XCAFDoc_ShapeTool::GetShape(part), volume);
+            BRepGProp::SurfaceProperties(XCAFDoc_ShapeTool::GetShape(part), area);
+            const gp_Pnt middle = volume.CentreOfMass().Transformed(here);
+            std::printf("{\"name\": \"%s\", \"volume\": %.17g, \"area\": %.17g, \"middle\": [%.17g, %.17g, %.17g]}\n",
+                        below.c_str(), volume.Mass(), area.Mass(), middle.X(), middle.Y(), middle.Z());
+        }
+    }
+
+    Handle(TDocStd_Document) document_;
+    Handle(XCAFDoc_ShapeTool) shapes_;
+};
+
+bool write_step(const Sample& sample, const std::string& path, const char* schema, const char* unit) {
+    Interface_Static::SetCVal("write.step.schema", schema);
+    Interface_Static::SetCVal("write.step.unit", unit);
+    STEPCAFControl_Writer writer;
+    return writer.Transfer(sample.document()) && writer.Write(path.c_str()) == IFSelect_RetDone;
+}
+
+/// `solids`: 1 writes solids, 0 trimmed surfaces.
+bool write_iges(const Sample& sample, const std::string& path, int solids) {
+    Interface_Static::SetIVal("write.iges.brep.mode", solids);
+    IGESCAFControl_Writer writer;
+    return writer.Transfer(sample.document()) && writer.Write(path.c_str());
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+    if (count != 2) return 2;
+    const std::string folder = words[1];
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+    STEPControl_Controller::Init();
+    IGESControl_Controller::Init();
+    const Sample sample;
+    const bool written = write_step(sample, folder + "/ap203.step", "AP203", "MM") &&
+                         write_step(sample, folder + "/ap214.stp", "AP214IS", "INCH") &&
+                         write_step(sample, folder + "/ap242.stp", "AP242DIS", "M") &&
+                         write_iges(sample, folder + "/solids.igs", 1) &&
+                         write_iges(sample, folder + "/surfaces.iges", 0);
+    return written ? 0 : 1;
+}
