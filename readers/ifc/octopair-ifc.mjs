@@ -1,4 +1,3 @@
-#!/usr/bin/env node
 // octopair-ifc: reads IFC2x3, IFC4 and IFC4x3 (.ifc, .ifczip) by web-ifc, and writes a model stream.
 //
 //     octopair-ifc [--include-type TYPE]... FILE
