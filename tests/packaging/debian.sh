@@ -4,9 +4,10 @@
 #     debian.sh PACKAGES      the folder that scripts/package made
 #
 # 1. octopair alone, without a compiler: prints the time from apt install to the first pairs.
-# 2. The tests of the packages (packaging/debian/tests) with autopkgtest: the README's C++, C and Python, ranks and the server.
-# 3. The server under the options of its systemd unit, as the user octopair.
-# 4. After their removal no file of the packages is left.
+# 2. The readers: octopair reads IFC and STEP with their packages.
+# 3. The tests of the packages (packaging/debian/tests) with autopkgtest: the README's C++, C and Python, ranks and the server.
+# 4. The server under the options of its systemd unit, as the user octopair.
+# 5. After their removal no file of the packages is left.
 #
 # Needs root and Debian's mirror. Without either, the status is 77: skipped.
 set -euo pipefail
@@ -52,7 +53,26 @@ in_root sh /debs/tests/program
 awk -v from="$begin" -v to="$(date +%s.%N)" 'BEGIN { printf "from apt install to pairs: %.1f s\n", to - from }'
 in_root sh -c 'test -f /usr/share/man/man1/octopair.1.gz && test -f /usr/share/bash-completion/completions/octopair'
 
-echo "2. the packages' own tests"
+echo "2. the readers"
+PYTHONPATH=$here/../readers python3 -B - > "$bare/tmp/wall.ifc" << 'END'
+from ifc_writer import IfcWriter
+
+file = IfcWriter("IFC4")
+file.element("IFCWALL", "Wall", file.represent([file.block((0, 0, 0), (4000, 200, 3000))]), "$,$")
+print(file.text())
+END
+xz -dc "$here/../readers/as1_pe_203.stp.xz" > "$bare/tmp/as1.stp"
+install /debs/octopair-ifc_*.deb /debs/octopair-step_*.deb
+# FILE READER COUNT: octopair reads this number of elements with this reader.
+reads() {
+    in_root octopair info "/tmp/$1" > "$work/info" || fail "octopair info $1"
+    grep -q "read by $2$" "$work/info" && grep -q "$3 of $3 with geometry were read" "$work/info" ||
+        { cat "$work/info" && fail "$1 is read wrongly"; }
+}
+reads wall.ifc octopair-ifc 1
+reads as1.stp octopair-step 18
+
+echo "3. the packages' own tests"
 source=$(ls "$packages"/source/*.dsc)
 # The tests run in the environment of this script, without its settings for compilers.
 env -u CXX -u CMAKE_CXX_COMPILER_LAUNCHER autopkgtest "$source" "$bare"/debs/*.deb -- chroot "$bare" > "$work/autopkgtest.log" 2>&1 ||
@@ -61,7 +81,7 @@ sed -n '/ summary$/,$p' "$work/autopkgtest.log" > "$work/summary"
 cat "$work/summary"
 [ "$(grep -c ' PASS$' "$work/summary")" = "$(grep -c '^Tests:' "$bare/debs/tests/control")" ] || fail "a test of the packages did not run"
 
-echo "3. the server's unit"
+echo "4. the server's unit"
 install /debs/octopair-server_*.deb /debs/octopair-doc_*.deb
 unit=$bare/lib/systemd/system/octopair.service
 sed 's|^ExecStart=[^ ]*|ExecStart=/bin/true|' "$unit" > "$work/octopair.service"
@@ -80,7 +100,7 @@ in_root sh -euc '
     rmdir /run/octopair'
 in_root test -f /usr/share/doc/octopair/html/index.html
 
-echo "4. removal"
+echo "5. removal"
 [ "$(list_files | wc -l)" -gt 50 ] || fail "no files of the packages are found"
 in_root apt-get purge -y -qq '*octopair*' > "$work/apt.log" 2>&1 || { tail -20 "$work/apt.log" && fail "apt-get purge"; }
 left=$(list_files)
