@@ -1,4 +1,4 @@
-// Makes the libraries of the page available: node install.mjs FOLDER [WORK [SOURCES]]
+// Makes the libraries of the page, or of octopair-ifc, available: node install.mjs FOLDER [WORK [SOURCES]]
 //
 // FOLDER  has one folder of installed libraries for each package-lock.json, named by the hash of that file. The libraries are
 //         installed with npm if they are missing. Several processes may do this at the same time.
@@ -41,7 +41,7 @@ function install(folder, installed) {
   }
   rmSync(part, {recursive: true, force: true});
   if (error) fail(`cannot run npm: ${error.message}`);
-  if (status !== 0) fail('npm ci failed; it needs its registry once: "scripts/setup viewer" installs the libraries of the page');
+  if (status !== 0) fail('npm ci failed; it needs its registry once: "scripts/setup viewer_tests ifc" installs the libraries');
 }
 
 if (!folder) fail('usage: node install.mjs FOLDER [WORK [SOURCES]]');
