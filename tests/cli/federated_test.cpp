@@ -30,7 +30,8 @@ TEST_F(Federated, LostElementsAreTold) {
     model.add_element("IFCSPACE", "room", model.add("IFCBLOCK(#9,1.,1.,1.)"));
     save("a.ifc", model);
     const std::string warning = "1 of 3 elements with geometry were not read: 1 IFCBEAM, the first is " +
-                                ifc_id("block") + " ('block'). Export the model as glTF or OBJ\n";
+                                ifc_id("block") +
+                                " ('block'). Install octopair-ifc, or export the model as glTF or OBJ\n";
     const Outcome outcome = run("detect a.ifc --stats s.json -o p.csv");
     EXPECT_TRUE(has_text(outcome.err,
                          "\nelements    2 of 3 with geometry were read; left out on purpose: IFCSPACE 1\n"

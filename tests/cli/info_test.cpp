@@ -157,7 +157,7 @@ END-ISO-10303-21;
     EXPECT_TRUE(
         has_text(outcome.err,
                  "the file is IFC4 and has 1 IfcTriangulatedFaceSet, 1 IfcCartesianPointList3D; Assimp knows only the "
-                 "types of IFC2x3. Export the model as IFC2x3, glTF or OBJ\n"));
+                 "types of IFC2x3. Install octopair-ifc, or export the model as IFC2x3, glTF or OBJ\n"));
 }
 #endif
 

@@ -218,11 +218,13 @@ TEST(Ifc, LostElementsAreAWarning) {
     lost.insert(lost.find("#20="),
                 "#56=IFCBLOCK(#4,1.,1.,1.);\n"
                 "#57=IFCSHAPEREPRESENTATION(#5,'Body','CSG',(#56));\n#58=IFCPRODUCTDEFINITIONSHAPE($,$,(#57));\n");
-    EXPECT_EQ(warnings(lost),
-              std::vector{path + ": 1 of 2 elements with geometry were not read: 1 IFCWALL, the first is "
-                                 "0000000000000000000006 ('T_\u00fcr'). Export the model as glTF or OBJ"});
+    EXPECT_EQ(
+        warnings(lost),
+        std::vector{path +
+                    ": 1 of 2 elements with geometry were not read: 1 IFCWALL, the first is "
+                    "0000000000000000000006 ('T_\u00fcr'). Install octopair-ifc, or export the model as glTF or OBJ"});
     lost.replace(lost.find("IFC2X3"), 6, "IFC4");
-    EXPECT_TRUE(warnings(lost)[0].ends_with("Export the model as IFC2x3, glTF or OBJ"));
+    EXPECT_TRUE(warnings(lost)[0].ends_with("Install octopair-ifc, or export the model as IFC2x3, glTF or OBJ"));
 }
 
 TEST(Ifc, LostElementsAreCountedByType) {
@@ -334,11 +336,13 @@ TEST(Ifc, TheSchemaIsARemedy) {
         return io::ifc_remedy(path);
     };
     EXPECT_EQ(remedy("ISO-10303-21;FILE_SCHEMA(('IFC4'));#1=IFCADVANCEDBREP(#2);"),
-              "the file is IFC4 and has 1 IfcAdvancedBrep; Assimp knows only the types of IFC2x3. Export the model as "
+              "the file is IFC4 and has 1 IfcAdvancedBrep; Assimp knows only the types of IFC2x3. Install "
+              "octopair-ifc, or export the model as "
               "IFC2x3, glTF or OBJ");
     EXPECT_EQ(remedy("FILE_SCHEMA(('IFC4'));"),
-              "the file is IFC4, and Assimp knows only IFC2x3. Export the model as IFC2x3, glTF or OBJ");
-    EXPECT_EQ(remedy(model), "export the model anew as IFC2x3, or as glTF or OBJ");
+              "the file is IFC4, and Assimp knows only IFC2x3. Install octopair-ifc, or export the model as IFC2x3, "
+              "glTF or OBJ");
+    EXPECT_EQ(remedy(model), "install octopair-ifc, or export the model anew as IFC2x3, glTF or OBJ");
     EXPECT_EQ(io::ifc_remedy(directory.file("a.3ds")), "");
 }
 

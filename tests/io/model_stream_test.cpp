@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -188,7 +191,7 @@ TEST_F(ModelStreams, ThatAreCutAreRefused) {
 
 TEST_F(ModelStreams, WithAnyByteChangedAreReadOrRefused) {
     const std::string whole = house();
-    for (std::uint64_t i = 0; i < case_count(2000); ++i) {
+    for (std::uint64_t i = 0; i < case_count(5000); ++i) {
         samples::RandomStream random(59, i);
         std::string changed = whole;
         for (std::uint64_t k = 0; k <= random.below(3); ++k)
@@ -280,11 +283,12 @@ protected:
     ReaderPrograms() { write_file(input_, "a model"); }
 
     LoadedScene read_with(const std::string& script, std::chrono::seconds patience = std::chrono::seconds(100),
-                          const std::stop_token& stop = {}) const {
+                          const std::stop_token& stop = {}, std::optional<std::uint64_t> memory = {}) const {
         write_file(folder_.file("script"), script);
         io::SceneContent content = with_shapes;
         content.reader.command = "exec /bin/sh '" + folder_.file("script") + "'";
         content.reader.patience = patience;
+        content.reader.memory = memory;
         return io::read_scene(input_, content, stop);
     }
     std::string refusal_with(const std::string& script) const {
@@ -326,6 +330,24 @@ TEST_F(ReaderPrograms, ThatWriteNothingAreEnded) {
     });
     EXPECT_TRUE(has_text(words, "has written nothing for 1 seconds"));
     EXPECT_NE(::kill(std::stoi(read_file(folder_.file("id"))), 0), 0);
+}
+
+/// The program that fills the memory is not the shell, but one that the shell started.
+TEST_F(ReaderPrograms, ThatFillTheMemoryAreEnded) {
+    write_file(folder_.file("inner"), "echo $$ > '" + folder_.file("id") + "'; exec tail /dev/zero");
+    const std::string script = "/bin/sh '" + folder_.file("inner") + "' & wait";
+    const std::string words = error_of(ErrorCode::resource_limit, [&] {
+        (void)read_with(script, std::chrono::seconds(100), {}, std::uint64_t(64) << 20);
+    });
+    EXPECT_TRUE(has_text(words, "sh needs more than 67108864 bytes of memory"));
+    // init waits for a process whose parent has ended.
+    const pid_t id = std::stoi(read_file(folder_.file("id")));
+    const auto is_gone = [&] {
+        std::ifstream state("/proc/" + std::to_string(id) + "/stat");
+        std::string line;
+        return !std::getline(state, line) || line.find(") Z") != std::string::npos;
+    };
+    while (!is_gone()) std::this_thread::yield();
 }
 
 TEST_F(ReaderPrograms, ThatCloseTheirOutputAndGoOnAreEnded) {

@@ -195,7 +195,10 @@ void check_readable(const std::string& path) {
     if (!head) return;
     const KnownFormat known = known_by_head(path, head);
     if (head->size == 0 && known.ending != ".csv") refuse(path, "is empty");
-    if (ending_of(path) == ".ifczip" && has_reader_program(".ifczip")) return;  // its reader expects an archive
+    if (ending_of(path) == ".ifczip") {  // its reader expects an archive
+        if (has_reader_program(".ifczip")) return;
+        refuse(path, "is an archive, which octopair-ifc reads; install it, or unpack the archive");
+    }
     refuse_wrapped(path, *head);
     refuse_without_mark(path, known.ending, *head);
     if (known.format == nullptr) return;

@@ -88,11 +88,17 @@ std::string ifc_remedy(const std::string& path) {
     const std::string step = read_step(path), types = types_beyond_ifc2x3(step), schema = ifc_schema(step);
     if (!types.empty()) {
         return fmt::format(
-            "the file is {} and has {}; Assimp knows only the types of IFC2x3. Export the model as IFC2x3, glTF or OBJ",
+            "the file is {} and has {}; Assimp knows only the types of IFC2x3. Install octopair-ifc, or export the "
+            "model as "
+            "IFC2x3, glTF or OBJ",
             schema.empty() ? "IFC" : schema, types);
     }
-    if (in_upper_case(schema) == "IFC2X3") return "export the model anew as IFC2x3, or as glTF or OBJ";
-    return fmt::format("the file is {}, and Assimp knows only IFC2x3. Export the model as IFC2x3, glTF or OBJ", schema);
+    if (in_upper_case(schema) == "IFC2X3")
+        return "install octopair-ifc, or export the model anew as IFC2x3, glTF or OBJ";
+    return fmt::format(
+        "the file is {}, and Assimp knows only IFC2x3. Install octopair-ifc, or export the model as IFC2x3, glTF or "
+        "OBJ",
+        schema);
 }
 
 }  // namespace octopair::io

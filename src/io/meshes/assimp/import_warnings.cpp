@@ -67,7 +67,7 @@ void add_lost(const std::string& file, const IfcBody& body, const IfcText& text,
 std::string lost_elements(const MeshFile& file) {
     const std::string words = elements_of(file).lost_text();
     if (words.empty()) return {};
-    return fmt::format("{}: {}. Export the model as {}glTF or OBJ", file.path(), words,
+    return fmt::format("{}: {}. Install octopair-ifc, or export the model as {}glTF or OBJ", file.path(), words,
                        in_upper_case(file.ifc_text().schema) == "IFC2X3" ? "" : "IFC2x3, ");
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,8 @@ struct ReaderChoice {
     std::vector<std::string> include_types = {};  ///< IFC: types that are left out otherwise, for example "IfcSpace"
     /// STEP, IGES: greatest distance of triangles from the true surface, in the unit of the world; 0: that of the program.
     double chord = 0;
+    std::optional<std::uint64_t> memory =
+        {};                              ///< the most bytes that the program may have; by default as ReadBudget says
     std::chrono::seconds patience{300};  ///< a program that writes nothing for so long is ended
 };
 

@@ -32,12 +32,26 @@ namespace {
 using Clock = std::chrono::steady_clock;
 namespace fs = std::filesystem;
 
+/// Returns the pages of memory that a process has, and all processes that it started.
+std::uint64_t resident_pages(pid_t id) {
+    std::uint64_t all = 0, resident = 0;
+    std::ifstream memory(fmt::format("/proc/{}/statm", id));
+    if (!(memory >> all >> resident)) return 0;
+    std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", id));
+    for (pid_t child = 0; children >> child;) resident += resident_pages(child);
+    return resident;
+}
+
 /// A process that runs a reader, and the reading end of its standard output. The destructor kills the process and waits for it.
 class ReaderProcess {
 public:
     ReaderProcess(const std::string& path, std::vector<std::string>& arguments, const ReadBudget& budget,
-                  std::chrono::seconds patience)
-        : path_(path), program_(fs::path(arguments.front()).filename().string()), budget_(budget), patience_(patience) {
+                  const ReaderChoice& choice)
+        : path_(path),
+          program_(fs::path(arguments.front()).filename().string()),
+          budget_(budget),
+          memory_(choice.memory.value_or(budget.limit())),
+          patience_(choice.patience) {
         int ends[2];
         if (::pipe2(ends, O_CLOEXEC) != 0) fail_io(path, "cannot make a pipe", errno);
         pipe_ = Descriptor(ends[0]);
@@ -108,13 +122,10 @@ private:
         if (::lseek(errors_.number(), 0, SEEK_END) > most_errors) {
             throw Error(ErrorCode::resource_limit, fmt::format("{}: {} writes endless messages", path_, program_));
         }
-        std::ifstream file(fmt::format("/proc/{}/statm", id_));
-        std::uint64_t all = 0, resident = 0;
-        if (!(file >> all >> resident)) return;
-        if (resident <= budget_.limit() / std::uint64_t(::sysconf(_SC_PAGESIZE))) return;
+        if (resident_pages(id_) <= memory_ / std::uint64_t(::sysconf(_SC_PAGESIZE))) return;
         throw Error(ErrorCode::resource_limit,
                     fmt::format("{}: {} needs more than {} bytes of memory, the limit for a file of its size", path_,
-                                program_, budget_.limit()));
+                                program_, memory_));
     }
 
     /// Returns the last line that the process wrote to its standard error.
@@ -145,6 +156,7 @@ private:
 
     std::string path_, program_;
     const ReadBudget& budget_;
+    std::uint64_t memory_;  // the most bytes that the process and those that it started may have
     std::chrono::seconds patience_;
     Descriptor pipe_, errors_;
     Clock::time_point checked_ = Clock::now();
@@ -216,7 +228,7 @@ LoadedScene read_by_program(const std::string& path, std::vector<std::string> ar
     if (!fs::is_regular_file(path, ignored)) {  // a stream: the program reads the copy in memory
         arguments.back() = fmt::format("/proc/{}/fd/{}", ::getpid(), file.descriptor());
     }
-    ReaderProcess process(path, arguments, budget, content.reader.patience);
+    ReaderProcess process(path, arguments, budget, content.reader);
     const ByteSource source = [&](std::span<std::byte> bytes) { return process.read(bytes); };
     ElementInHand in_hand;
     std::optional<LoadedScene> scene;
