@@ -61,7 +61,7 @@ STAGES = {
     "python": Stage("release", ("-L", "python"), options=PYTHON, compiled=DEBUG),
     "viewer": Stage("release", ("-L", "viewer"), options=PYTHON),
     "install": Stage("release", ("-L", "install")),
-    "docs": Stage("release", ("-L", "docs"), ("octopair_documented",), options=PYTHON),
+    "docs": Stage("release", ("-L", "docs"), ("octopair_documented",), options=PYTHON + READERS),
     "bench": Stage("release", ("-L", "bench"), options=("OCTOPAIR_BUILD_BENCHMARKS",)),
     "checks": Stage("clang", ("-L", "checks"), ("octopair_messages", "octopair_page")),
     "clang": Stage("clang", ("-L", "quick", "-LE", "skip_clang"),

@@ -61,7 +61,7 @@ file = IfcWriter("IFC4")
 file.element("IFCWALL", "Wall", file.represent([file.block((0, 0, 0), (4000, 200, 3000))]), "$,$")
 print(file.text())
 END
-xz -dc "$here/../readers/as1_pe_203.stp.xz" > "$bare/tmp/as1.stp"
+xz -dc "$here/../../examples/models/as1_pe_203.stp.xz" > "$bare/tmp/as1.stp"
 install /debs/octopair-ifc_*.deb /debs/octopair-step_*.deb
 # FILE READER COUNT: octopair reads this number of elements with this reader.
 reads() {

@@ -4,7 +4,7 @@
     readers_test.py PROGRAM READERS SAMPLES     PROGRAM: octopair; READERS: the folder of the readers; SAMPLES: the program of step_samples.cpp
 
 IFC files are written by ifc_writer.py, which states their coordinates. Samples of STEP and IGES are written by Open CASCADE, whose exact
-geometry has other volumes than the triangles of the reader. as1_pe_203.stp.xz and floors_2x3.ifc.xz are models of others (README.md).
+geometry has other volumes than the triangles of the reader. floors_2x3.ifc.xz and those of examples/models are models of others.
 """
 import csv
 import json
@@ -27,6 +27,12 @@ PROGRAM, READERS, SAMPLES = (pathlib.Path(word).resolve() for word in sys.argv[1
 CUBE = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
 FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 TRIANGLES = [triangle for a, b, c, d in FACES for triangle in ((a, b, c), (a, c, d))]
+
+
+def as1():
+    """Returns the STEP file of an assembly with 18 parts."""
+    models = HERE.parent.parent / "examples" / "models"
+    return lzma.decompress((models / "as1_pe_203.stp.xz").read_bytes()).decode()
 
 
 def cube(low, size):
@@ -170,7 +176,7 @@ class Readers(unittest.TestCase):
         self.assertIn("cut.ifc: is cut", self.run_program("info", "cut.ifc", status=3).stderr)
         self.write("other.ifc", text.replace("'IFC4'", "'IFC9'"))
         self.assertIn("other.ifc: ", self.run_program("info", "other.ifc", status=3).stderr)
-        self.write("cut.stp", lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()[:40000])
+        self.write("cut.stp", as1()[:40000])
         self.assertIn("cut.stp: ", self.run_program("info", "cut.stp", status=3).stderr)
 
     def test_floors(self):
@@ -180,7 +186,7 @@ class Readers(unittest.TestCase):
         self.assertLessEqual(classes, {"touching", "penetrating"})
 
     def test_as1(self):
-        text = lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()
+        text = as1()
         self.write("as1.stp", text)
         facts = self.info("as1.stp")
         self.assertEqual((facts["format"], facts["unit"]), ("STEP, read by octopair-step", "mm"))
@@ -192,7 +198,7 @@ class Readers(unittest.TestCase):
         self.assertEqual({re.sub(r"\d+$", "", label.lower()) for label in labels} & {"bolt", "nut"}, {"bolt", "nut"}, labels)
 
     def test_a_moved_bolt(self):
-        text = lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()
+        text = as1()
         # The place of a bolt with its nut in its bracket, which occurs twice. Lengths are inches.
         place = "#2410=CARTESIAN_POINT('',(0.E0,1.E1,2.E1));"
         self.assertIn(place, text)
@@ -239,7 +245,7 @@ class Readers(unittest.TestCase):
         self.assertAlmostEqual(json.loads((self.folder / "s.json").read_text(encoding="utf-8"))["tolerance"], 1.0, places=12)
 
     def test_lost_solids_are_counted(self):
-        text = lzma.decompress((HERE / "as1_pe_203.stp.xz").read_bytes()).decode()
+        text = as1()
         shells = re.findall(r"#\d+=CLOSED_SHELL\([^;]*;", text)
         self.assertEqual(len(shells), 5)
         self.write("lost.stp", text.replace(shells[1], ""))  # of the bracket, which occurs twice
