@@ -4,11 +4,10 @@
 import {readFileSync} from 'node:fs';
 import {inflateRawSync} from 'node:zlib';
 
-import * as ifc from 'web-ifc';
-
 import {Relations} from './relations.mjs';
 import {Shapes} from './shapes.mjs';
 import {StreamWriter} from './stream_writer.mjs';
+import {ifc} from './web_ifc.mjs';
 
 // These types have a shape, but their elements are no solid things.
 const leftOut = new Set(['IfcSpace', 'IfcSpatialZone', 'IfcOpeningElement', 'IfcOpeningStandardCase', 'IfcVirtualElement', 'IfcAnnotation',

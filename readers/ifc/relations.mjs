@@ -1,5 +1,5 @@
 // Relations reads the names, places and relations of the elements of an IFC file.
-import * as ifc from 'web-ifc';
+import {ifc} from './web_ifc.mjs';
 
 const refs = value => (Array.isArray(value) ? value : value ? [value] : []).map(item => item?.value).filter(item => typeof item === 'number');
 

@@ -38,25 +38,44 @@ function stretch(m) {
 }
 
 // Joins vertices with equal coordinates, and leaves out triangles with two equal corners.
-function weld(vertices, triangles) {
-  const numbers = new Map();
-  const points = [];
+function weld(coordinates, triangles) {
+  const vertices = new Float64Array(coordinates.length);
+  for (let i = 0; i < vertices.length; ++i) vertices[i] = coordinates[i] + 0;  // -0 becomes 0
+  const words = new Uint32Array(vertices.buffer);
   const newNumber = new Uint32Array(vertices.length / 3);
+  // A hash table with open addressing has the numbers of the joined vertices, which move to the front of `vertices`.
+  const mask = 2 ** Math.ceil(Math.log2(2 * newNumber.length + 2)) - 1;
+  const table = new Int32Array(mask + 1).fill(-1);
+  let count = 0;
   for (let i = 0; i < newNumber.length; ++i) {
-    const key = `${vertices[3 * i]},${vertices[3 * i + 1]},${vertices[3 * i + 2]}`;
-    let number = numbers.get(key);
-    if (number === undefined) {
-      numbers.set(key, number = numbers.size);
-      points.push(vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]);
+    let hash = 0;
+    for (let k = 6 * i; k < 6 * i + 6; ++k) hash = Math.imul(hash ^ words[k] ^ hash >>> 15, 0x9E3779B1);
+    let at = (hash ^ hash >>> 15) & mask;
+    const [x, y, z] = [vertices[3 * i], vertices[3 * i + 1], vertices[3 * i + 2]];
+    while (table[at] >= 0) {
+      const known = 3 * table[at];
+      if (vertices[known] === x && vertices[known + 1] === y && vertices[known + 2] === z) break;
+      at = at + 1 & mask;
     }
-    newNumber[i] = number;
+    if (table[at] < 0) {
+      table[at] = count;
+      vertices[3 * count] = x;
+      vertices[3 * count + 1] = y;
+      vertices[3 * count + 2] = z;
+      ++count;
+    }
+    newNumber[i] = table[at];
   }
-  const kept = [];
+  const kept = new Uint32Array(triangles.length);
+  let size = 0;
   for (let i = 0; i < triangles.length; i += 3) {
     const [a, b, c] = [newNumber[triangles[i]], newNumber[triangles[i + 1]], newNumber[triangles[i + 2]]];
-    if (a !== b && b !== c && c !== a) kept.push(a, b, c);
+    if (a === b || b === c || c === a) continue;
+    kept[size++] = a;
+    kept[size++] = b;
+    kept[size++] = c;
   }
-  return {vertices: Float64Array.from(points), triangles: Uint32Array.from(kept)};
+  return {vertices: vertices.slice(0, 3 * count), triangles: kept.slice(0, size)};
 }
 
 export class Shapes {
@@ -101,7 +120,7 @@ export class Shapes {
     const data = this.api.GetVertexArray(read.GetVertexData(), read.GetVertexDataSize());
     const indices = this.api.GetIndexArray(read.GetIndexData(), read.GetIndexDataSize());
     const vertices = new Float64Array(data.length / 2);  // data has a normal for each vertex
-    for (let i = 0; i < vertices.length / 3; ++i) vertices.set(data.subarray(6 * i, 6 * i + 3), 3 * i);
+    for (let i = 0; i < vertices.length; ++i) vertices[i] = data[6 * Math.floor(i / 3) + i % 3];
     mesh = weld(vertices, indices);
     read.delete?.();
     this.meshes.set(geometry, mesh);
@@ -117,7 +136,7 @@ export class Shapes {
       const first = vertices.length / 3;
       const scale = stretch(local);
       for (let i = 0; i < mesh.vertices.length; i += 3) {
-        const [x, y, z] = mesh.vertices.subarray(i, i + 3);
+        const [x, y, z] = [mesh.vertices[i], mesh.vertices[i + 1], mesh.vertices[i + 2]];
         error = Math.max(error, scale * Math.abs(x), scale * Math.abs(y), scale * Math.abs(z));
         for (let k = 0; k < 3; ++k)
           vertices.push(local === identity ? mesh.vertices[i + k] : local[4 * k] * x + local[4 * k + 1] * y + local[4 * k + 2] * z + local[4 * k + 3]);
