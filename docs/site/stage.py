@@ -68,7 +68,12 @@ class Site:
         self.write(name, "\n".join(lines))
 
     def show_file(self, name):
-        text = (self.root / name).read_text(encoding="utf-8")
+        try:
+            text = (self.root / name).read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            size = (self.root / name).stat().st_size
+            self.write(f"files/{name}.md", f"---\norphan: true\n---\n# {name}\n\nThis file is no text. It has {size:,} bytes.\n")
+            return
         note = ""
         if len(text) > LONGEST_SHOWN:
             text = text[:text.rindex("\n", 0, LONGEST_SHOWN)]
