@@ -49,7 +49,7 @@ function readText(file) {
   return bytes.length > 4 && bytes.toString('latin1', 0, 4) === 'PK\x03\x04' ? unzip(bytes) : bytes;
 }
 
-// Bodies, not axes, footprints or boxes, are what collides.
+// Bodies, not axes, footprints or boxes, are what collides. Beside a 'Body', other representations show the same body in another way.
 const noBodies = new Set(['Axis', 'FootPrint', 'Box', 'Annotation', 'Profile', 'CoG', 'Reference', 'Plan', 'Clearance', 'Lighting']);
 
 // Whether a product has a body: true, false, or null if its representation cannot be read. Removes what is no body, because web-ifc would
@@ -59,7 +59,9 @@ function findBody(api, model, relations, product) {
   if (shape === undefined) return false;
   const parts = relations.line(shape)?.Representations;
   if (!parts) return null;
-  const bodies = parts.filter(part => !noBodies.has(relations.text(part.value, 'RepresentationIdentifier')));
+  const kind = part => relations.text(part.value, 'RepresentationIdentifier');
+  const named = parts.filter(part => kind(part) === 'Body');
+  const bodies = named.length > 0 ? named : parts.filter(part => !noBodies.has(kind(part)));
   if (bodies.length > 0 && bodies.length < parts.length) api.WriteLine(model, {...relations.line(shape), Representations: bodies});
   return bodies.length > 0;
 }

@@ -12,11 +12,13 @@ export class Relations {
     this.wholes = new Map();
     this.hosts = new Map();
     this.systems = new Map();
-    this.materials = new Map();
+    this.materials = new Map();  // of elements and of their types
+    this.types = new Map();
     this.readSpace();
     this.readOpenings();
     this.readSystems();
     this.readMaterials();
+    this.readTypes();
   }
 
   line(id) {
@@ -102,6 +104,12 @@ export class Relations {
     });
   }
 
+  readTypes() {
+    this.all(ifc.IFCRELDEFINESBYTYPE, line => {
+      for (const element of refs(line.RelatedObjects)) this.types.set(element, line.RelatingType?.value);
+    });
+  }
+
   // Names of the materials that a material, a list, a set of layers, profiles or constituents, or a use of one has.
   materialNames(id, depth) {
     const line = id === undefined ? null : this.line(id);
@@ -132,7 +140,7 @@ export class Relations {
     return {
       name: [...above, id].map(segment).join('/'), label: this.labelOf(id), type: this.typeName(id), id: this.globalId(id),
       parent: above.length > 0 ? this.labelOf(above[above.length - 1]) : '', level: level === undefined ? '' : this.text(level, 'Name'),
-      material: this.materials.get(id) ?? '', host: host === undefined ? '' : this.globalId(host),
+      material: this.materials.get(id) ?? this.materials.get(this.types.get(id)) ?? '', host: host === undefined ? '' : this.globalId(host),
       assembly: whole === undefined ? '' : this.globalId(whole), systems: this.systems.get(id) ?? [],
     };
   }

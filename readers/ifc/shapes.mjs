@@ -1,7 +1,8 @@
 // Geometry of elements: the meshes of web-ifc, welded exactly, and shared by all elements that have them alike.
 //
 // web-ifc gives an element as pieces: a mesh in float32, and a float64 transform from it to the world in metres, with y up. Pieces of an
-// element become one shape, in the coordinates of the first piece. Elements whose pieces lie alike, to 1e-9 there, share a shape.
+// element become one shape, in the coordinates of the first piece. Elements whose pieces lie alike, to 1e-9 there, share a shape. The mesh of
+// one id differs between elements: openings of the element are cut from it. So meshes are told apart by their contents.
 
 // The axes of IFC from those of web-ifc, exactly: (x, y, z) becomes (x, -z, y).
 function worldTransform(columns) {
@@ -78,12 +79,25 @@ function weld(coordinates, triangles) {
   return {vertices: vertices.slice(0, 3 * count), triangles: kept.slice(0, size)};
 }
 
+// A number for contents, which different contents hardly share.
+function digest(...arrays) {
+  let [a, b] = [0, 0];
+  for (const array of arrays) {
+    const words = new Uint32Array(array.buffer, array.byteOffset, array.length);
+    for (let i = 0; i < words.length; ++i) {
+      a = Math.imul(a ^ words[i] ^ a >>> 15, 0x9E3779B1);
+      b = Math.imul(b ^ words[i] ^ b >>> 13, 0x85EBCA6B) + 1 | 0;
+    }
+  }
+  return `${a}:${b}:${arrays.map(array => array.length)}`;
+}
+
 export class Shapes {
   constructor(api, model, writer) {
     this.api = api;
     this.model = model;
     this.writer = writer;
-    this.meshes = new Map();   // of web-ifc's geometries, by their ids
+    this.meshes = new Map();   // of web-ifc's geometries, by their ids and contents
     this.written = new Map();  // numbers of shapes, by their pieces
   }
 
@@ -93,8 +107,8 @@ export class Shapes {
     const pieces = [];
     for (let i = 0; i < mesh.geometries.size(); ++i) {
       const {geometryExpressID, flatTransformation} = mesh.geometries.get(i);
-      if (this.mesh(geometryExpressID).triangles.length > 0)
-        pieces.push({geometry: geometryExpressID, transform: worldTransform(flatTransformation)});
+      const geometry = this.readMesh(geometryExpressID);
+      if (this.meshes.get(geometry).triangles.length > 0) pieces.push({geometry, transform: worldTransform(flatTransformation)});
     }
     mesh.delete?.();
     if (pieces.length === 0) return null;
@@ -113,18 +127,19 @@ export class Shapes {
     return shape === null ? null : {shape, transform: base};
   }
 
-  mesh(geometry) {
-    let mesh = this.meshes.get(geometry);
-    if (mesh) return mesh;
+  // Returns the key of the mesh that a geometry has now.
+  readMesh(geometry) {
     const read = this.api.GetGeometry(this.model, geometry);
     const data = this.api.GetVertexArray(read.GetVertexData(), read.GetVertexDataSize());
     const indices = this.api.GetIndexArray(read.GetIndexData(), read.GetIndexDataSize());
-    const vertices = new Float64Array(data.length / 2);  // data has a normal for each vertex
-    for (let i = 0; i < vertices.length; ++i) vertices[i] = data[6 * Math.floor(i / 3) + i % 3];
-    mesh = weld(vertices, indices);
     read.delete?.();
-    this.meshes.set(geometry, mesh);
-    return mesh;
+    const key = `${geometry}:${digest(data, indices)}`;
+    if (!this.meshes.has(key)) {
+      const vertices = new Float64Array(data.length / 2);  // data has a normal for each vertex
+      for (let i = 0; i < vertices.length; ++i) vertices[i] = data[6 * Math.floor(i / 3) + i % 3];
+      this.meshes.set(key, weld(vertices, indices));
+    }
+    return key;
   }
 
   shapeOf(pieces) {
@@ -132,7 +147,7 @@ export class Shapes {
     const triangles = [];
     let error = 0;
     for (const {geometry, local} of pieces) {
-      const mesh = this.mesh(geometry);
+      const mesh = this.meshes.get(geometry);
       const first = vertices.length / 3;
       const scale = stretch(local);
       for (let i = 0; i < mesh.vertices.length; i += 3) {

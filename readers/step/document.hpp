@@ -15,7 +15,7 @@ struct Document {
     Handle(TDocStd_Document) content;  ///< lengths are mm
     ShapeNames names;                  ///< IGES: of the shapes inside of parts
     LostCounts lost;                   ///< solids and faces of the file that Open CASCADE cannot read
-    std::string faults;                ///< what it finds missing or wrong in the file; empty: nothing
+    std::vector<std::string> warnings;  ///< what it finds missing or wrong in the file, or does not read
 };
 
 /// Reads a file; its content decides its format. Throws std::runtime_error if the file has nothing that can be read.

@@ -2,19 +2,19 @@
 //
 //     octopair-step [--chord MM] FILE
 //
-// Each solid of a part is an object, and so is each connected shell outside of solids. Curved faces become triangles that are at most the
-// chord error away: 0.1 mm, or 1e-4 of the size of a solid that is smaller than 1 m. Instances of a part share its shapes.
+// Each solid of a part is an object, and so is each connected shell outside of solids. Curved faces become triangles that are about the chord
+// error away: 0.1 mm, or 1e-4 of the size of a solid that is smaller than 1 m. Instances of a part share its shapes.
 //
-// document      what Open CASCADE reads, and what it loses
-// pieces        the solids and shells of a part
-// welded_mesh   the triangles of a piece
-#include <BRepMesh_IncrementalMesh.hxx>
+// document        what Open CASCADE reads, and what it loses
+// names           names of parts
+// pieces          the solids and shells of a part
+// triangulation   triangles of their faces, and how far these are from the surface
+// welded_mesh     the triangles of a piece
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Standard_Failure.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
-#include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -35,8 +35,10 @@
 #include <vector>
 
 #include "document.hpp"
+#include "names.hpp"
 #include "pieces.hpp"
 #include "stream_writer.hpp"
+#include "triangulation.hpp"
 #include "welded_mesh.hpp"
 
 namespace octopair::reader {
@@ -52,8 +54,9 @@ Options parse(int count, char** words) {
     for (int i = 1; i < count; ++i) {
         const std::string word = words[i];
         if (word == "--chord" && i + 1 < count) {
-            options.chord = std::strtod(words[++i], nullptr);
-            if (!(options.chord > 0) || !std::isfinite(options.chord)) throw std::runtime_error("--chord needs a length above 0");
+            char* end = nullptr;
+            options.chord = std::strtod(words[++i], &end);
+            if (*end != '\0' || !(options.chord > 0) || !std::isfinite(options.chord)) throw std::runtime_error("--chord needs a length above 0");
         } else if (options.file.empty()) {
             options.file = word;
         } else {
@@ -62,23 +65,6 @@ Options parse(int count, char** words) {
     }
     if (options.file.empty()) throw std::runtime_error("octopair-step [--chord MM] FILE");
     return options;
-}
-
-std::string name_of(const TDF_Label& label) {
-    Handle(TDataStd_Name) name;
-    if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
-    const TCollection_ExtendedString& text = name->Get();
-    std::string utf8(std::size_t(text.LengthOfCString()) + 1, '\0');
-    Standard_PCharacter end = utf8.data();
-    utf8.resize(std::size_t(text.ToUTF8CString(end)));
-    return utf8;
-}
-
-/// Returns whether Open CASCADE gave a label its name: an entry of the document, a number, or a kind of shape.
-bool is_made_up(const std::string& name) {
-    constexpr std::array<const char*, 8> kinds = {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE", "WIRE", "EDGE", "VERTEX"};
-    return name.starts_with("=>") || name.starts_with("NAUO") || name.find_first_not_of("0123456789") == std::string::npos ||
-           std::any_of(kinds.begin(), kinds.end(), [&](const char* kind) { return name == kind; });
 }
 
 /// Writes the occurrences of all parts.
@@ -107,15 +93,15 @@ private:
         if (tool_->IsReference(label)) (void)XCAFDoc_ShapeTool::GetReferredShape(label, part);
         const gp_Trsf here = place * XCAFDoc_ShapeTool::GetLocation(label).Transformation();
         const std::string product = name_of(part);
-        std::string name = is_made_up(name_of(label)) ? product : name_of(label);
+        std::string name = name_of(label);
+        if (is_made_up(name) || (is_number(name) && !is_made_up(product))) name = product;
         std::replace(name.begin(), name.end(), '/', '|');
         std::string path = above.empty() ? name : above + "/" + name;
         if (is_made_up(name)) {  // a solid of a product: it has the name of that
             name = parent.empty() ? "part" : parent;
             path = above.empty() ? name : above;
         }
-        // Equal names below one another are numbered; those of a product and of its solids do not count as equal.
-        path += number_text(path, tool_->IsAssembly(part));
+        path = unused(path, tool_->IsAssembly(part));
         if (tool_->IsAssembly(part)) {
             TDF_LabelSequence components;
             XCAFDoc_ShapeTool::GetComponents(part, components);
@@ -135,20 +121,21 @@ private:
         writer_.element("the part '" + names.path + "'");
         ++parts_;
         const std::vector<WrittenPiece>& pieces = pieces_of_part(part, names);
-        if (pieces.empty()) return lost_.add(names.product, names.path);
+        if (pieces.empty()) return lost_.add(names.product.empty() ? "part" : names.product, names.path);
         ++read_;
         StreamedInstance instance = {.shape = 0, .transform = rows_of(place), .name = {}, .type = names.product, .parent = names.parent};
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             const std::string& name = pieces[i].name;
-            std::string suffix = name.empty() ? "" : "/" + name;
-            if (!name.empty()) {
-                suffix += number_text(names.path + suffix, false);
-            } else if (pieces.size() > 1) {
-                suffix = ":" + std::to_string(i + 1);
-            }
+            const std::string number = pieces.size() > 1 ? ":" + std::to_string(i + 1) : "";
             instance.shape = pieces[i].shape;
-            instance.name = names.path + suffix;
-            instance.label = name.empty() ? names.label + suffix : suffix.substr(suffix.rfind('/') + 1);
+            instance.name = names.path;
+            instance.label = names.label + number;
+            if (!name.empty()) {
+                instance.name = unused(names.path + "/" + name, false);
+                instance.label = name.substr(name.rfind('/') + 1);
+            } else if (pieces.size() > 1) {
+                instance.name = unused(names.path + number, false);
+            }
             writer_.instance(instance);
         }
     }
@@ -176,12 +163,11 @@ private:
         int missing = 0;
         for (const Piece& piece : pieces_of(XCAFDoc_ShapeTool::GetShape(part), names_)) {
             const double chord = options_.chord > 0 ? options_.chord : std::min(0.1, 1e-4 * size_of(piece.shape));
-            BRepMesh_IncrementalMesh(piece.shape, chord, false, 0.3, false);
             WeldedMesh mesh;
+            mesh.shape.error = triangulate(piece.shape, chord);
             for (TopExp_Explorer faces(piece.shape, TopAbs_FACE); faces.More(); faces.Next())
                 missing += mesh.add(TopoDS::Face(faces.Current())) ? 0 : 1;
             if (mesh.shape.triangles.empty()) continue;
-            mesh.shape.error = chord + piece.gap;
             at->second.push_back({writer_.shape(mesh.shape), piece.name});
         }
         if (missing > 0) {
@@ -191,10 +177,15 @@ private:
         return at->second;
     }
 
-    /// Returns "" for the first occurrence of a path, then "#2", "#3" and so on.
-    std::string number_text(const std::string& path, bool is_assembly) {
-        const int before = occurrences_[{path, is_assembly}]++;
-        return before > 0 ? "#" + std::to_string(before + 1) : "";
+    /// Returns a path that no other assembly, or no other part, has: with "#2", "#3" and so on after the first. A product with one solid has
+    /// the path of this solid.
+    std::string unused(const std::string& path, bool is_assembly) {
+        int& count = occurrences_[{path, is_assembly}];
+        if (count++ == 0) return path;
+        for (;; ++count) {
+            const std::string numbered = path + "#" + std::to_string(count);
+            if (occurrences_.try_emplace({numbered, is_assembly}, 1).second) return numbered;
+        }
     }
 
     const Handle(XCAFDoc_ShapeTool) tool_;
@@ -213,7 +204,7 @@ void run(const Options& options) {
     StreamWriter writer(1);
     const Document document = read_document(options.file);
     writer.model("mm", "z", "");
-    if (!document.faults.empty()) writer.warning(document.faults);
+    for (const std::string& warning : document.warnings) writer.warning(warning);
     AssemblyWalk(document, options, writer).run();
 }
 

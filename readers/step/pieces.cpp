@@ -2,67 +2,124 @@
 
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
-#include <BRepLib.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
+#include <BRepGProp.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <GProp_GProps.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Iterator.hxx>
+#include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <gp_Pnt.hxx>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace octopair::reader {
 
 namespace {
 
 /// Returns the largest gap, in mm, across which faces outside of solids are neighbours. It closes what files of IGES leave open.
-double gap_for(const TopoDS_Shape& shape) { return std::min(0.01, 1e-5 * size_of(shape)); }
+double gap_for(const TopoDS_Shape& shape) { return std::min(0.01, 1e-4 * size_of(shape)); }
 
-/// Joins faces at their common edges. Returns the connected shells, with outward normals if they are closed.
-std::vector<TopoDS_Shape> sew(const std::vector<TopoDS_Shape>& faces, double gap) {
+/// A shell of joined faces.
+struct SewnShell {
+    TopoDS_Shape shape;
+    double volume = 0;  ///< of a closed shell: below 0 if its normals point inward; 0: open
+    std::string name;
+};
+
+/// Joins faces at their common edges, and appends the connected shells.
+void sew(const std::vector<TopoDS_Shape>& faces, double gap, const std::string& name, std::vector<SewnShell>& shells) {
     BRepBuilderAPI_Sewing sewing(gap);
     for (const TopoDS_Shape& face : faces) sewing.Add(face);
     sewing.Perform();
     const TopoDS_Shape sewn = sewing.SewedShape();
-    std::vector<TopoDS_Shape> shells;
-    for (TopExp_Explorer shell(sewn, TopAbs_SHELL); shell.More(); shell.Next()) {
-        if (!BRep_Tool::IsClosed(shell.Current())) {
-            shells.push_back(shell.Current());
-            continue;
-        }
-        TopoDS_Solid solid;
-        BRep_Builder().MakeSolid(solid);
-        BRep_Builder().Add(solid, shell.Current());
-        BRepLib::OrientClosedSolid(solid);
-        shells.push_back(solid);
+    const auto add = [&](const TopoDS_Shape& shell) {
+        shells.push_back({shell, 0, name});
+        if (!BRep_Tool::IsClosed(shell)) return;
+        GProp_GProps properties;
+        BRepGProp::VolumeProperties(shell, properties);
+        shells.back().volume = properties.Mass();
+    };
+    for (TopExp_Explorer shell(sewn, TopAbs_SHELL); shell.More(); shell.Next()) add(shell.Current());
+    // A face can be closed alone, as a sphere is.
+    for (TopExp_Explorer face(sewn, TopAbs_FACE, TopAbs_SHELL); face.More(); face.Next()) {
+        TopoDS_Shell shell;
+        BRep_Builder().MakeShell(shell);
+        BRep_Builder().Add(shell, face.Current());
+        add(shell);
     }
-    for (TopExp_Explorer face(sewn, TopAbs_FACE, TopAbs_SHELL); face.More(); face.Next())
-        shells.push_back(face.Current());
-    return shells;
+}
+
+/// Returns whether a shell lies inside of a closed shell; they do not cross.
+bool lies_inside(const TopoDS_Shape& inner, const TopoDS_Shape& outer) {
+    TopoDS_Solid solid;
+    BRep_Builder().MakeSolid(solid);
+    BRep_Builder().Add(solid, outer);
+    const gp_Pnt point = BRep_Tool::Pnt(TopoDS::Vertex(TopExp_Explorer(inner, TopAbs_VERTEX).Current()));
+    return BRepClass3d_SolidClassifier(solid, point, 1e-7).State() == TopAbs_IN;
+}
+
+/// Makes pieces of shells. A closed shell whose normals point inward is a cavity of the smallest shell around it.
+std::vector<Piece> pieces_of_shells(const std::vector<SewnShell>& shells) {
+    std::vector<TopoDS_Shape> cavities(shells.size());  // by the shells around them
+    std::vector<bool> is_cavity(shells.size(), false);
+    for (std::size_t inner = 0; inner < shells.size(); ++inner) {
+        if (shells[inner].volume >= 0) continue;
+        std::optional<std::size_t> around;
+        for (std::size_t outer = 0; outer < shells.size(); ++outer) {
+            if (shells[outer].volume <= -shells[inner].volume || (around && shells[outer].volume >= shells[*around].volume)) continue;
+            if (lies_inside(shells[inner].shape, shells[outer].shape)) around = outer;
+        }
+        if (!around) continue;
+        is_cavity[inner] = true;
+        if (cavities[*around].IsNull()) {
+            TopoDS_Compound all;
+            BRep_Builder().MakeCompound(all);
+            BRep_Builder().Add(all, shells[*around].shape);
+            cavities[*around] = all;
+        }
+        BRep_Builder().Add(cavities[*around], shells[inner].shape);
+    }
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+        if (is_cavity[i]) continue;
+        const TopoDS_Shape& shell = shells[i].shape;
+        const TopoDS_Shape& whole = !cavities[i].IsNull() ? cavities[i] : shell;
+        pieces.push_back({shells[i].volume < 0 ? shell.Reversed() : whole, shells[i].name});
+    }
+    return pieces;
 }
 
 class PieceWalk {
 public:
     explicit PieceWalk(const ShapeNames& names) : names_(names) {}
 
-    /// Adds the pieces of a shape; `name`: its path.
+    /// Adds the solids and shells of a shape; `name`: its path.
     void add(const TopoDS_Shape& shape, const std::string& name) {
         switch (shape.ShapeType()) {
             case TopAbs_COMPOUND:
             case TopAbs_COMPSOLID: return add_group(shape, name);
-            case TopAbs_SOLID: return pieces.push_back({shape, 0, name});
+            case TopAbs_SOLID: return solids.push_back({shape, name});
             case TopAbs_SHELL:
-            case TopAbs_FACE: return add_faces({shape}, gap_for(shape), name);
+            case TopAbs_FACE: return sew({shape}, gap_for(shape), name, shells);
             default: return;
         }
     }
 
-    std::vector<Piece> pieces;
+    std::vector<Piece> solids;
+    std::vector<SewnShell> shells;  // outside of solids
 
 private:
-    /// Faces in different groups are never joined, for two parts may have edges in common where they touch.
+    /// Joins the faces of a compound, but not those of its inner compounds: there, two parts may have edges in common where they touch.
     void add_group(const TopoDS_Shape& group, const std::string& name) {
         std::vector<TopoDS_Shape> faces;
         for (TopoDS_Iterator inner(group); inner.More(); inner.Next()) {
@@ -73,10 +130,7 @@ private:
                 add(inner.Value(), below(name, inner.Value()));
             }
         }
-        if (!faces.empty()) add_faces(faces, gap_for(group), name);
-    }
-    void add_faces(const std::vector<TopoDS_Shape>& faces, double gap, const std::string& name) {
-        for (const TopoDS_Shape& shell : sew(faces, gap)) pieces.push_back({shell, gap, name});
+        if (!faces.empty()) sew(faces, gap_for(group), name, shells);
     }
     std::string below(const std::string& name, const TopoDS_Shape& inner) const {
         const auto known = names_.find(inner);
@@ -98,7 +152,9 @@ double size_of(const TopoDS_Shape& shape) {
 std::vector<Piece> pieces_of(const TopoDS_Shape& part, const ShapeNames& names) {
     PieceWalk walk(names);
     walk.add(part, {});
-    return std::move(walk.pieces);
+    std::vector<Piece> pieces = std::move(walk.solids);
+    for (Piece& piece : pieces_of_shells(walk.shells)) pieces.push_back(std::move(piece));
+    return pieces;
 }
 
 }  // namespace octopair::reader

@@ -22,14 +22,13 @@ using ShapeNames = std::unordered_map<TopoDS_Shape, std::string, PartHash, SameP
 
 struct Piece {
     TopoDS_Shape shape;
-    double gap;        ///< in mm; how far its faces may have been moved to join them
     std::string name;  ///< path of the names inside of the part; empty: none
 };
 
 /// Returns the length of the diagonal of the bounding box, in mm.
 double size_of(const TopoDS_Shape& shape);
 
-/// Returns the solids of a part, and the connected shells of its faces outside of solids.
+/// Returns the solids of a part, and the connected shells of its faces outside of solids. Closed shells have outward normals, and cavities.
 std::vector<Piece> pieces_of(const TopoDS_Shape& part, const ShapeNames& names);
 
 }  // namespace octopair::reader

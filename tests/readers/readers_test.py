@@ -138,12 +138,41 @@ class Readers(unittest.TestCase):
             found.append([(row["class"], round(float(row["depth"]), 6)) for row in self.rows("walls.ifc")])
         self.assertEqual(found, 2 * [[("penetrating", 0.001)]])
 
+    def test_openings_are_cut_from_their_elements_alone(self):
+        for first in (True, False):
+            file = IfcWriter("IFC4")
+            wall = file.mapped(file.block((0, 0, 0), (4000, 200, 3000)))
+            for k, y in enumerate((0, 1000)):
+                added = file.element("IFCWALL", f"Wall {k}", wall((0, y, 0)), "$,$")
+                if first == (k == 0):
+                    hole = file.element("IFCOPENINGELEMENT", "Hole", file.represent([file.block((1000, y - 50, 0), (2000, y + 250, 2000))]),
+                                        "$,$", contained=False)
+                    file.add(f"IFCRELVOIDSELEMENT({file.root('')},$,{added},{hole})")
+            self.write("walls.ifc", file.text())
+            shapes, instances = read_stream(self.stream("octopair-ifc", "walls.ifc"))
+            volumes = [round(shapes[instance.shape].volume_and_middle()[0] / 1e9, 6) for instance in instances]
+            self.assertEqual(volumes, [2.0, 2.4] if first else [2.4, 2.0])
+
+    def test_materials_of_types(self):
+        file = IfcWriter("IFC4")
+        wall = file.element("IFCWALL", "Wall", file.represent([file.block((0, 0, 0), (4000, 200, 3000))]), "$,$")
+        kind = file.add(f"IFCWALLTYPE({file.root('Kind')},$,$,$,$,$,$,.STANDARD.)")
+        file.add(f"IFCRELDEFINESBYTYPE({file.root('')},$,({wall}),{kind})")
+        concrete = file.add("IFCMATERIAL('Concrete',$,$)")
+        file.add(f"IFCRELASSOCIATESMATERIAL({file.root('')},$,({kind}),{concrete})")
+        self.write("wall.ifc", file.text())
+        self.run_program("detect", "wall.ifc", "wall.ifc", "--stage", "features", "--quiet", "--output", "all.jsonl")
+        self.assertEqual(json.loads((self.folder / "all.jsonl").read_text(encoding="utf-8"))["a_material"], "Concrete")
+
     def test_what_is_no_body(self):
         file = IfcWriter("IFC4")
         body = file.represent([file.block((0, 0, 0), (1000, 1000, 1000))])
-        room = file.represent([file.block((0, -3000, 0), (1000, 0, 1000))])
-        file.lines[int(room[1:]) - 1] = file.lines[int(room[1:]) - 1].replace("'Body'", "'Clearance'")
-        file.element("IFCPUMP", "Pump", f"{body},{room}", "$,$")
+        others = []
+        for kind in ("Clearance", "Body-Fallback"):
+            other = file.represent([file.block((0, -3000, 0), (1000, 0, 1000))])
+            file.lines[int(other[1:]) - 1] = file.lines[int(other[1:]) - 1].replace("'Body'", f"'{kind}'")
+            others.append(other)
+        file.element("IFCPUMP", "Pump", ",".join([body, *others]), "$,$")
         self.write("pump.ifc", file.text())
         self.assertEqual(self.info("pump.ifc")["triangles"], "12")
 
@@ -215,7 +244,7 @@ class Readers(unittest.TestCase):
         for name in ("ap203.step", "ap214.stp", "ap242.stp", "solids.igs", "surfaces.iges"):
             with self.subTest(name):
                 facts = self.info(name)
-                self.assertEqual((facts["objects"], facts["open meshes"]), ("7 meshes", "0"))
+                self.assertEqual((facts["objects"], facts["open meshes"]), ("9 meshes", "0"))
                 shapes, instances = read_stream(self.stream("octopair-step", "--chord", "0.02", name))
                 left = list(wanted)
                 for instance in instances:
@@ -233,7 +262,22 @@ class Readers(unittest.TestCase):
         # Open CASCADE writes the names of some solids alone into IGES.
         names = {instance.name for instance in read_stream(self.stream("octopair-step", "solids.igs"))[1]}
         self.assertLessEqual({"Sample/Ball", "Sample/Ring", "Sample/Pin"}, names)
-        self.assertEqual(len(names), 7)
+        self.assertEqual(len(names), 9)
+
+    def test_errors_are_true(self):
+        subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)
+        for chord in ((), ("--chord", "1")):
+            shapes, instances = read_stream(self.stream("octopair-step", *chord, "ap203.step"))
+            ball = shapes[next(instance.shape for instance in instances if instance.name == "Sample/Ball")]
+            for triangle in ball.triangles:
+                corners = [ball.vertices[i] for i in triangle]
+                middle = [sum(coordinates) / 3 for coordinates in zip(*corners)]
+                self.assertLess(15 - math.hypot(*middle), ball.error * (1 + 1e-9))
+
+    def test_a_part_in_a_housing_is_free(self):
+        subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)
+        for name in ("ap203.step", "solids.igs", "surfaces.iges"):
+            self.assertEqual(self.rows(name), [])
 
     def test_chord(self):
         subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)

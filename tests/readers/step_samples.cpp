@@ -45,6 +45,11 @@ TopoDS_Shape plate_with_holes() {
     return plate;
 }
 
+/// A box with a cavity, in which a smaller box would be free.
+TopoDS_Shape housing() {
+    return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(50, 40, 30), BRepPrimAPI_MakeBox(gp_Pnt(5, 5, 5), gp_Pnt(45, 35, 25)));
+}
+
 TopoDS_Shape rounded_block() {
     const TopoDS_Shape block = BRepPrimAPI_MakeBox(30, 20, 10);
     BRepFilletAPI_MakeFillet fillet(block);
@@ -77,6 +82,9 @@ public:
         put(assembly, add_part("Ring", BRepPrimAPI_MakeTorus(30, 8)), "Ring", moved(0, 600, 0, 0.7));
         put(assembly, add_part("Cone", BRepPrimAPI_MakeCone(20, 5, 40)), "Cone", moved(0, 800, 0));
         put(assembly, add_part("Pin", BRepPrimAPI_MakeCylinder(0.5, 3)), "Pin", moved(0, 900, 0));
+        put(assembly, add_part("Housing", housing()), "Housing", moved(0, 1000, 0, 0.3));
+        put(assembly, add_part("77001", BRepPrimAPI_MakeBox(gp_Pnt(22, 17, 12), gp_Pnt(28, 22, 18))), "77001",
+            moved(0, 1000, 0, 0.3));
         shapes_->UpdateAssemblies();
         print(assembly, "Sample", gp_Trsf());
     }
