@@ -32,8 +32,9 @@ double gap_for(const TopoDS_Shape& shape) { return std::min(0.01, 1e-4 * size_of
 /// A shell of joined faces.
 struct SewnShell {
     TopoDS_Shape shape;
-    double volume = 0;  ///< of a closed shell: below 0 if its normals point inward; 0: open
     std::string name;
+    Bnd_Box box = {};
+    double volume = 0;  ///< of a closed shell: below 0 if its normals point inward; 0: open
 };
 
 /// Joins faces at their common edges, and appends the connected shells.
@@ -43,11 +44,12 @@ void sew(const std::vector<TopoDS_Shape>& faces, double gap, const std::string& 
     sewing.Perform();
     const TopoDS_Shape sewn = sewing.SewedShape();
     const auto add = [&](const TopoDS_Shape& shell) {
-        shells.push_back({shell, 0, name});
+        SewnShell& added = shells.emplace_back(SewnShell{.shape = shell, .name = name});
         if (!BRep_Tool::IsClosed(shell)) return;
+        BRepBndLib::Add(shell, added.box);
         GProp_GProps properties;
         BRepGProp::VolumeProperties(shell, properties);
-        shells.back().volume = properties.Mass();
+        added.volume = properties.Mass();
     };
     for (TopExp_Explorer shell(sewn, TopAbs_SHELL); shell.More(); shell.Next()) add(shell.Current());
     // A face can be closed alone, as a sphere is.
@@ -59,41 +61,44 @@ void sew(const std::vector<TopoDS_Shape>& faces, double gap, const std::string& 
     }
 }
 
-/// Returns whether a shell lies inside of a closed shell; they do not cross.
-bool lies_inside(const TopoDS_Shape& inner, const TopoDS_Shape& outer) {
+/// Returns whether a closed shell lies inside of another one, if they do not cross: whether one of its vertices does.
+bool lies_inside(const SewnShell& inner, const SewnShell& outer) {
+    if (outer.box.IsOut(inner.box.CornerMin()) || outer.box.IsOut(inner.box.CornerMax())) return false;
+    const TopExp_Explorer vertex(inner.shape, TopAbs_VERTEX);
+    if (!vertex.More()) return false;
     TopoDS_Solid solid;
     BRep_Builder().MakeSolid(solid);
-    BRep_Builder().Add(solid, outer);
-    const gp_Pnt point = BRep_Tool::Pnt(TopoDS::Vertex(TopExp_Explorer(inner, TopAbs_VERTEX).Current()));
+    BRep_Builder().Add(solid, outer.shape);
+    const gp_Pnt point = BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current()));
     return BRepClass3d_SolidClassifier(solid, point, 1e-7).State() == TopAbs_IN;
 }
 
 /// Makes pieces of shells. A closed shell whose normals point inward is a cavity of the smallest shell around it.
 std::vector<Piece> pieces_of_shells(const std::vector<SewnShell>& shells) {
-    std::vector<TopoDS_Shape> cavities(shells.size());  // by the shells around them
+    std::vector<TopoDS_Shape> hollow(shells.size());  // a shell with its cavities; null without cavities
     std::vector<bool> is_cavity(shells.size(), false);
     for (std::size_t inner = 0; inner < shells.size(); ++inner) {
         if (shells[inner].volume >= 0) continue;
         std::optional<std::size_t> around;
         for (std::size_t outer = 0; outer < shells.size(); ++outer) {
             if (shells[outer].volume <= -shells[inner].volume || (around && shells[outer].volume >= shells[*around].volume)) continue;
-            if (lies_inside(shells[inner].shape, shells[outer].shape)) around = outer;
+            if (lies_inside(shells[inner], shells[outer])) around = outer;
         }
         if (!around) continue;
         is_cavity[inner] = true;
-        if (cavities[*around].IsNull()) {
+        if (hollow[*around].IsNull()) {
             TopoDS_Compound all;
             BRep_Builder().MakeCompound(all);
             BRep_Builder().Add(all, shells[*around].shape);
-            cavities[*around] = all;
+            hollow[*around] = all;
         }
-        BRep_Builder().Add(cavities[*around], shells[inner].shape);
+        BRep_Builder().Add(hollow[*around], shells[inner].shape);
     }
     std::vector<Piece> pieces;
     for (std::size_t i = 0; i < shells.size(); ++i) {
         if (is_cavity[i]) continue;
         const TopoDS_Shape& shell = shells[i].shape;
-        const TopoDS_Shape& whole = !cavities[i].IsNull() ? cavities[i] : shell;
+        const TopoDS_Shape& whole = !hollow[i].IsNull() ? hollow[i] : shell;
         pieces.push_back({shells[i].volume < 0 ? shell.Reversed() : whole, shells[i].name});
     }
     return pieces;
