@@ -181,7 +181,7 @@ private:
             counts.undecided += block.work[i].undecided;
             seconds += block.work[i].seconds;
         }
-        if (!block.work.empty()) size_.learn(block.work[0].in, seconds);
+        size_.learn(block.work.empty() ? block.batch.pairs().size() : block.work[0].in, seconds);
     }
 
     const Engine* engine_;

@@ -347,6 +347,17 @@ TEST(Pipeline, FewCostlyPairsAreOnAllThreads) {
     EXPECT_TRUE(meeting.met());
 }
 
+TEST(Pipeline, PassesManyPairsAtOnceWithoutFilters) {
+    const std::vector<Box3f> boxes(100, Box3f{{0, 0, 0}, {1, 1, 1}});
+    std::uint64_t calls = 0, pairs = 0;
+    Pipeline(2).run(*make_local_engine(1), all_of(boxes), [&](const Batch& batch) {
+        ++calls;
+        pairs += batch.pairs().size();
+    });
+    EXPECT_EQ(pairs, 4950u);
+    EXPECT_LT(calls, 100u);
+}
+
 TEST(Pipeline, HasTheLimitOfThreadsOfAnEngine) {
     EXPECT_EQ(error_of(ErrorCode::usage, [] { (void)Pipeline(max_threads + 1); }),
               "threads: 4097 is not in the range 0 to 4096");
