@@ -160,9 +160,10 @@ private:
         TDF_Tool::Entry(part, entry);
         const auto [at, is_new] = written_.try_emplace(entry.ToCString());
         if (!is_new) return at->second;
-        int missing = 0;
+        int missing = 0, cavities = 0;
         for (const Piece& piece : pieces_of(XCAFDoc_ShapeTool::GetShape(part), names_)) {
             const double chord = options_.chord > 0 ? options_.chord : std::min(0.1, 1e-4 * size_of(piece.shape));
+            cavities += piece.cavities;
             WeldedMesh mesh;
             mesh.shape.error = triangulate(piece.shape, chord);
             for (TopExp_Explorer faces(piece.shape, TopAbs_FACE); faces.More(); faces.Next())
@@ -171,8 +172,12 @@ private:
             at->second.push_back({writer_.shape(mesh.shape), piece.name});
         }
         if (missing > 0) {
-            writer_.warning("'" + names.path + "' lacks " + std::to_string(missing) +
-                            " faces, which Open CASCADE cannot triangulate");
+            writer_.warning("'" + names.path + "' lacks faces, because Open CASCADE cannot triangulate them: " + std::to_string(missing));
+        }
+        if (cavities > 0) {
+            writer_.warning("'" + names.path +
+                            "': shells inside of others, whose normals point inward, are read as cavities, not as objects: " +
+                            std::to_string(cavities));
         }
         return at->second;
     }

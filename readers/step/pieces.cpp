@@ -76,6 +76,7 @@ bool lies_inside(const SewnShell& inner, const SewnShell& outer) {
 /// Makes pieces of shells. A closed shell whose normals point inward is a cavity of the smallest shell around it.
 std::vector<Piece> pieces_of_shells(const std::vector<SewnShell>& shells) {
     std::vector<TopoDS_Shape> hollow(shells.size());  // a shell with its cavities; null without cavities
+    std::vector<int> cavities(shells.size(), 0);
     std::vector<bool> is_cavity(shells.size(), false);
     for (std::size_t inner = 0; inner < shells.size(); ++inner) {
         if (shells[inner].volume >= 0) continue;
@@ -86,6 +87,7 @@ std::vector<Piece> pieces_of_shells(const std::vector<SewnShell>& shells) {
         }
         if (!around) continue;
         is_cavity[inner] = true;
+        ++cavities[*around];
         if (hollow[*around].IsNull()) {
             TopoDS_Compound all;
             BRep_Builder().MakeCompound(all);
@@ -99,7 +101,7 @@ std::vector<Piece> pieces_of_shells(const std::vector<SewnShell>& shells) {
         if (is_cavity[i]) continue;
         const TopoDS_Shape& shell = shells[i].shape;
         const TopoDS_Shape& whole = !hollow[i].IsNull() ? hollow[i] : shell;
-        pieces.push_back({shells[i].volume < 0 ? shell.Reversed() : whole, shells[i].name});
+        pieces.push_back({shells[i].volume < 0 ? shell.Reversed() : whole, shells[i].name, cavities[i]});
     }
     return pieces;
 }
@@ -113,7 +115,7 @@ public:
         switch (shape.ShapeType()) {
             case TopAbs_COMPOUND:
             case TopAbs_COMPSOLID: return add_group(shape, name);
-            case TopAbs_SOLID: return solids.push_back({shape, name});
+            case TopAbs_SOLID: return solids.push_back({shape, name, 0});
             case TopAbs_SHELL:
             case TopAbs_FACE: return sew({shape}, gap_for(shape), name, shells);
             default: return;

@@ -23,6 +23,7 @@ using ShapeNames = std::unordered_map<TopoDS_Shape, std::string, PartHash, SameP
 struct Piece {
     TopoDS_Shape shape;
     std::string name;  ///< path of the names inside of the part; empty: none
+    int cavities = 0;  ///< shells that were taken for cavities, because their normals point inward
 };
 
 /// Returns the length of the diagonal of the bounding box, in mm.

@@ -278,6 +278,24 @@ class Readers(unittest.TestCase):
         subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)
         for name in ("ap203.step", "solids.igs", "surfaces.iges"):
             self.assertEqual(self.rows(name), [])
+        self.assertIn("are read as cavities, not as objects: 1\n", self.run_program("info", "surfaces.iges").stdout)
+
+    def test_odd_parts(self):
+        subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)
+        shapes, instances = read_stream(self.stream("octopair-step", "odd.stp"))
+        names = [instance.name for instance in instances]
+        self.assertEqual(names, ["Odd/Speck", "Odd/Same", "Odd/Same#2", "Odd/Same#2#2"])
+        self.assertAlmostEqual(shapes[instances[0].shape].volume_and_middle()[0], 1.25e-10, delta=1e-12)
+
+    def test_odd_names_in_iges(self):
+        subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)
+        text = (self.folder / "solids.igs").read_bytes()
+        for name, read in ((b"4HB\xfcll;", "Sample/B\u00fcll"), (b";      ", None)):
+            self.assertEqual(text.count(b"406,1,4HBall;"), 1)
+            (self.folder / "names.igs").write_bytes(text.replace(b"406,1,4HBall;", b"406,1," + name))
+            names = {instance.name for instance in read_stream(self.stream("octopair-step", "names.igs"))[1]}
+            self.assertEqual(len(names), 9)
+            self.assertTrue(read is None or read in names, names)
 
     def test_chord(self):
         subprocess.run([SAMPLES, self.folder], capture_output=True, check=True)

@@ -2,8 +2,8 @@
 //
 //     step_samples FOLDER
 //
-// Each file has the same assembly: a frame of two plates, one turned, and other parts beside them. Standard output: one JSON object per
-// part with its path, and, in mm, exact volume, area and middle. The reader has to find these again in each file.
+// Each file but odd.stp has the same assembly: a frame of two plates, one turned, and other parts beside them. Standard output: one JSON object
+// per part with its path, and, in mm, exact volume, area and middle. The reader has to find these again in each file.
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepGProp.hxx>
@@ -66,11 +66,27 @@ gp_Trsf moved(double x, double y, double z, double turn = 0) {
 }
 
 /// An assembly of parts in one document.
-class Sample {
+class Assembly {
 public:
-    Sample() {
+    Assembly() {
         XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document_);
         shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
+    }
+
+    /// Parts that a reader finds hard: a box of half a micrometre, and names that numbering could make equal.
+    void add_odd_parts() {
+        const TDF_Label assembly = named(shapes_->NewShape(), "Odd");
+        put(assembly, add_part("Speck", BRepPrimAPI_MakeBox(5e-4, 5e-4, 5e-4)), "Speck", moved(100, 0, 0));
+        double x = 0;
+        for (const char* name : {"Same", "Same", "Same#2"}) {
+            put(assembly, add_part(name, BRepPrimAPI_MakeBox(1, 1, 1)), name, moved(x, 0, 0));
+            x += 10;
+        }
+        shapes_->UpdateAssemblies();
+    }
+
+    /// Adds the sample, and prints what is known of it.
+    void add_sample() {
         const TDF_Label assembly = named(shapes_->NewShape(), "Sample");
         const TDF_Label frame = named(shapes_->NewShape(), "Frame");
         const TDF_Label plate = add_part("Plate", plate_with_holes());
@@ -130,7 +146,7 @@ private:
     Handle(XCAFDoc_ShapeTool) shapes_;
 };
 
-bool write_step(const Sample& sample, const std::string& path, const char* schema, const char* unit) {
+bool write_step(const Assembly& sample, const std::string& path, const char* schema, const char* unit) {
     Interface_Static::SetCVal("write.step.schema", schema);
     Interface_Static::SetCVal("write.step.unit", unit);
     STEPCAFControl_Writer writer;
@@ -138,7 +154,7 @@ bool write_step(const Sample& sample, const std::string& path, const char* schem
 }
 
 /// `solids`: 1 writes solids, 0 trimmed surfaces.
-bool write_iges(const Sample& sample, const std::string& path, int solids) {
+bool write_iges(const Assembly& sample, const std::string& path, int solids) {
     Interface_Static::SetIVal("write.iges.brep.mode", solids);
     IGESCAFControl_Writer writer;
     return writer.Transfer(sample.document()) && writer.Write(path.c_str());
@@ -152,11 +168,13 @@ int main(int count, char** words) {
     Message::DefaultMessenger()->ChangePrinters().Clear();
     STEPControl_Controller::Init();
     IGESControl_Controller::Init();
-    const Sample sample;
-    const bool written = write_step(sample, folder + "/ap203.step", "AP203", "MM") &&
-                         write_step(sample, folder + "/ap214.stp", "AP214IS", "INCH") &&
-                         write_step(sample, folder + "/ap242.stp", "AP242DIS", "M") &&
-                         write_iges(sample, folder + "/solids.igs", 1) &&
-                         write_iges(sample, folder + "/surfaces.iges", 0);
+    Assembly sample, odd;
+    sample.add_sample();
+    odd.add_odd_parts();
+    const bool written =
+        write_step(sample, folder + "/ap203.step", "AP203", "MM") &&
+        write_step(sample, folder + "/ap214.stp", "AP214IS", "INCH") &&
+        write_step(sample, folder + "/ap242.stp", "AP242DIS", "M") && write_iges(sample, folder + "/solids.igs", 1) &&
+        write_iges(sample, folder + "/surfaces.iges", 0) && write_step(odd, folder + "/odd.stp", "AP214IS", "MM");
     return written ? 0 : 1;
 }
