@@ -62,7 +62,7 @@ def script_names(root):
 
 
 class Lists:
-    """Finds the names of add_test in a CMakeLists.txt. A variable has all values that the file gives it, whatever the conditions."""
+    """Finds the names of tests that a CMakeLists.txt adds. A variable has all values that the file gives it, whatever the conditions."""
 
     def __init__(self, root, path):
         self.root, self.names = root, set()
@@ -98,6 +98,8 @@ class Lists:
                 self.run(body, {**inner, "ARGN": values[len(parameters):]})
             elif command == "add_test" and words[:1] == ["NAME"]:
                 self.names.update(self.expanded(words[1], known))
+            elif command == "octopair_browser_test":
+                self.names.update(self.expanded(words[0], known))
             elif command in ("set", "list", "file", "get_filename_component"):
                 self.assign(command, words, known)
 
@@ -135,7 +137,7 @@ def ctest_names(root):
     names = set()
     for path in root.glob("tests/**/CMakeLists.txt"):
         text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
-        names |= Lists(root, path).names | set(re.findall(r"octopair_browser_test\(([\w.]+)", text))
+        names |= Lists(root, path).names
         for program, *more in map(str.split, re.findall(r"octopair_instruction_sets\((\w[\w ]*)\)", text)):
             names |= {f"{program}.{instructions}" for instructions in ("AVX2", "SSE4", *more)}
     return {name for name in names if "$" not in name}

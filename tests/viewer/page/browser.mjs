@@ -59,6 +59,11 @@ export function settings(page) {
   return page.evaluate(() => window.octopairView.settings());
 }
 
+// Waits until the page has drawn some pictures.
+export async function pictures(page, count) {
+  for (let k = 0; k < count; ++k) await page.evaluate(() => new Promise(done => requestAnimationFrame(done)));
+}
+
 // The serious and critical violations, one line each. axe runs in an isolated world where the page's policy does not reach.
 export async function accessibility(page) {
   await page.evaluate(axeSource);
