@@ -63,7 +63,7 @@ export async function withView(words, check, context = {}) {
   }
 }
 
-// What begins, what ends and how many pairs there are in each frame of moving.npy.
+// For each frame of moving.npy: the pairs that begin, the pairs that end, and the number of pairs. The program's events give them.
 export function countEvents() {
   const frames = Array.from({length: 25}, () => ({began: [], ended: [], pairs: 0}));
   for (const [frame, event, a, b] of readCsv(inputs.detect('moving.npy', '.csv', '--events'))) {
@@ -74,7 +74,7 @@ export function countEvents() {
   return frames;
 }
 
-// What the page says of a frame.
+// The text in which the page counts the objects and pairs of a frame of moving.npy.
 export function countsText({pairs, began, ended}) {
   return `300 objects, ${pairs} pairs, ${began.length} began, ${ended.length} ended`;
 }
