@@ -15,12 +15,13 @@ import sys
 
 # Removed keys, by the begin of a file's name. Keys of other files stay.
 REMOVED = {
-    "engines": {"seconds"},
-    "frames": {"case", "first_seconds", "processor_seconds", "seconds"},
+    "engines": {"aims", "seconds"},
+    "frames": {"case", "first_seconds", "goals", "processor_seconds", "seconds"},
     "paper": {"level", "seconds"},
     "peers": {"first_seconds", "hash", "seconds"},
-    "scaling": {"seconds"},
+    "scaling": {"aims", "seconds"},
     "self_intersections": {"seconds"},
+    "service": {"aims"},
 }
 
 
@@ -53,14 +54,14 @@ def without(value, names):
 
 
 def has_records(value):
-    """Returns whether `value` contains a list of objects."""
+    """Returns whether `value` contains a list of objects, or of lines of text."""
     if isinstance(value, dict):
         return any(map(has_records, value.values()))
-    return isinstance(value, list) and any(isinstance(part, dict) for part in value)
+    return isinstance(value, list) and any(isinstance(part, (dict, str)) for part in value)
 
 
 def text_of(value, indent=""):
-    """Returns JSON with sorted keys, and with one line for each record: an inner object that contains no list of objects."""
+    """Returns JSON with sorted keys, and with one line for each record: an inner object that contains no list of objects or lines."""
     if indent and not has_records(value):
         return json.dumps(value, sort_keys=True, ensure_ascii=False)
     inner = indent + " "

@@ -4,7 +4,8 @@
 //     scene_costs OBJECTS THREADS KIND float32|float64
 //
 // Memory is the highest resident size during the first call, minus the size before the call and the size of the pairs.
-// Times are medians of 5 further calls in octal order into a reused list.
+// Times are medians of 5 further calls in octal order into a reused list; of the median call, the last columns show the shares of the steps
+// (`sort`: Summary's count and scatter).
 
 #include <algorithm>
 #include <array>
@@ -41,14 +42,18 @@ void measure(const std::string& kind, std::uint64_t objects, unsigned threads) {
     const double before = status_bytes("VmRSS");
     const Summary first = engine->find_pairs(scene, pairs, options);
     const double peak = status_bytes("VmHWM");
-    std::array<double, 5> seconds{};
-    for (double& one : seconds) one = engine->find_pairs(scene, pairs, options).seconds;
-    std::nth_element(seconds.begin(), seconds.begin() + 2, seconds.end());
+    std::array<Summary, 5> calls;
+    for (Summary& one : calls) one = engine->find_pairs(scene, pairs, options);
+    std::nth_element(calls.begin(), calls.begin() + 2, calls.end(),
+                     [](const Summary& a, const Summary& b) { return a.seconds < b.seconds; });
+    const Summary& call = calls[2];
+    const auto percent = [&](double seconds) { return 100 * seconds / call.seconds; };
     const double n = double(objects);
     const double m = double(first.pairs);
-    std::printf("%-12s %-7s %8.1f %8.1f %9.1f %9.2f %8.2f %8.1f\n", kind.c_str(),
-                sizeof(Real) == 4 ? "float32" : "float64", first.seconds * 1e3, seconds[2] * 1e3,
-                seconds[2] * 1e9 / (n + m), m / n, double(first.entries) / n, (peak - before - m * sizeof(Pair)) / n);
+    std::printf("%-12s %-7s %8.1f %8.1f %9.1f %9.2f %9.2f %8.1f %7.0f%% %7.0f%% %7.0f%%\n", kind.c_str(),
+                sizeof(Real) == 4 ? "float32" : "float64", first.seconds * 1e3, call.seconds * 1e3,
+                call.seconds * 1e9 / (n + m), m / n, double(first.entries) / n, (peak - before - m * sizeof(Pair)) / n,
+                percent(call.steps.encode), percent(call.steps.count + call.steps.scatter), percent(call.steps.scan));
     std::fflush(stdout);
 }
 
@@ -68,8 +73,8 @@ int main(int count, char** words) {
         narrow ? measure<float>(words[3], size, k) : measure<double>(words[3], size, k);
         return 0;
     }
-    std::printf("%-12s %-7s %8s %8s %9s %9s %8s %8s\n", "scene", "numbers", "first/ms", "then/ms", "ns/(n+m)",
-                "pairs/n", "entries/n", "bytes/n");
+    std::printf("%-12s %-7s %8s %8s %9s %9s %9s %8s %8s %8s %8s\n", "scene", "numbers", "first/ms", "then/ms",
+                "ns/(n+m)", "pairs/n", "entries/n", "bytes/n", "encode", "sort", "scan");
     std::fflush(stdout);
     for (const std::string_view kind : samples::scene_kinds()) {
         if (left_out(kind)) continue;

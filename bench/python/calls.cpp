@@ -34,6 +34,7 @@ std::vector<ObjectId> ids;
 
 }  // namespace
 
+#pragma GCC visibility push(default)
 extern "C" {
 
 /// An engine and a list that are kept.
@@ -69,3 +70,4 @@ double move_and_step(const float* numbers, const unsigned char* mask, std::size_
     });
 }
 }
+#pragma GCC visibility pop

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Compares calls of the Python package with the same calls of C++ and with SciPy.
 
     PYTHONPATH=build/release/python/package bench/python/compare.py LIBRARY [--objects N] [--rounds R] [--json FILE]

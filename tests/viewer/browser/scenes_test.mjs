@@ -4,12 +4,13 @@ import assert from 'node:assert/strict';
 import {spawnSync} from 'node:child_process';
 import {existsSync, readFileSync} from 'node:fs';
 import {join} from 'node:path';
-import {clickAt, data, pixel, project, ready, settings, waitForData} from '../page/browser.mjs';
-import {colourAt, complete, depthDigits, depthText, expectTable, light, partnersIn, readCsv, readJsonl, searchFor, tablePairs,
+import {clickAt, data, pixel, project, settings, waitForData} from '../page/browser.mjs';
+import {colourAt, depthDigits, depthText, expectTable, light, partnersIn, readCsv, readJsonl, searchFor, tablePairs,
   text, topOf, waitForText} from './checks.mjs';
+import {firstPicture} from './first_picture.mjs';
 import {hostileName, shapesScene, threeBoxes} from './inputs.mjs';
 import {browser, inputs, keep, options, root, runAll, test, withView} from './pages.mjs';
-import {readNpy, run, view} from './program.mjs';
+import {readNpy, run} from './program.mjs';
 
 // ---- Boxes -----------------------------------------------------------------------------------------------------------
 
@@ -100,41 +101,12 @@ test('octants: levels, numbers and labels', () => withView([inputs.get('100k.npy
   await waitForData(page, 'octants', '0');
 }));
 
-async function firstPicture(name) {
-  const path = inputs.get(name);
-  const began = performance.now();
-  const program = keep(await view(options.program, [path]));
-  const context = await browser.newContext({viewport: {width: 1280, height: 720}, reducedMotion: 'reduce'});
-  const page = await context.newPage();
-  const client = await context.newCDPSession(page);
-  await page.goto(program.address, {waitUntil: 'commit'});
-  await ready(page, 90_000);
-  const all = Math.round(performance.now() - began);
-  const own = await data(page, 'firstPicture');
-  await complete(page, 90_000);
-  const bytes = await page.evaluate(() => ['navigation', 'resource'].flatMap(type => performance.getEntriesByType(type))
-    .reduce((sum, entry) => sum + entry.transferSize, 0));
-  const {result} = await client.send('Runtime.evaluate', {expression: 'performance.memory.usedJSHeapSize'});
-  const resident = await rendererMemory();
-  console.log(`     ${name}: first picture ${all} ms after the program's start, ${own} ms after the navigation; ` +
-    `${(bytes / 1e6).toFixed(1)} MB sent, tab ${resident} MB, of which JavaScript ${Math.round(result.value / 1e6)} MB`);
-  return {page, program, close: () => context.close()};
-}
-
-// The memory of the largest renderer, in MB.
-async function rendererMemory() {
-  const session = await browser.newBrowserCDPSession();
-  const {processInfo} = await session.send('SystemInfo.getProcessInfo');
-  await session.detach();
-  const sizes = processInfo.filter(process => process.type === 'renderer').map(({id}) => {
-    const status = existsSync(`/proc/${id}/status`) ? readFileSync(`/proc/${id}/status`, 'utf8') : '';
-    return Number(/VmRSS:\s+(\d+)/.exec(status)?.[1] ?? 0) / 1024;
-  });
-  return Math.round(Math.max(0, ...sizes));
+function openBoxes(name) {
+  return firstPicture(browser, options.program, inputs.get(name), keep);
 }
 
 test('100,000 boxes: the first picture', async () => {
-  const {page, program, close} = await firstPicture('100k.npy');
+  const {page, program, close} = await openBoxes('100k.npy');
   await page.keyboard.press('Escape');
   await waitForData(page, 'drawn', '100000');
   await close();
@@ -142,7 +114,7 @@ test('100,000 boxes: the first picture', async () => {
 });
 
 test('a million boxes: the first picture, a notice, and boxes near a place', async () => {
-  const {page, program, close} = await firstPicture('1m.npy');
+  const {page, program, close} = await openBoxes('1m.npy');
   const pairs = JSON.parse(run(options.program, ['detect', inputs.get('1m.npy'), '--count-only', '--quiet', '--stats', inputs.path('1m.json')]) || '0');
   assert.equal(await data(page, 'pairs'), String(pairs));
   assert.equal(JSON.parse(readFileSync(inputs.path('1m.json'))).pairs, pairs);
