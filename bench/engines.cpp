@@ -5,8 +5,7 @@
 // All engines take turns in one process, round by round, and keep their lists (engines/contest.hpp). Each row shows the
 // median, the first call and the start of the engine. First, the program measures the memory of each engine over all
 // its processes (engines/memory.hpp). An engine that finds other pairs than the first engine is marked, and the exit
-// status is 1. A missed aim does not change the exit status, because times depend on the machine. `--quick` uses a
-// tenth of the objects in large scenes, and a third of the rounds.
+// status is 1. `--quick` uses a tenth of the objects in large scenes, and a third of the rounds.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -36,18 +35,10 @@ struct Request {
 };
 
 std::string order_name(Order order) { return order == Order::octal ? "octal" : "ascending"; }
-std::string measure_name(Measure measure) { return measure == Measure::ratio ? "ratio" : "difference"; }
 
 /// Reduces the number of objects for a quick trial of the program.
 void shrink(std::uint64_t& objects) {
     if (objects > 100'000) objects /= 10;
-}
-
-std::string aim_text(const Aim& aim, const std::vector<Entrant>& entrants) {
-    const bool ratio = aim.measure == Measure::ratio;
-    return fmt::format("  {} {} {}: {:.3f}{}, at {} {:g}{}\n", aim.engine, ratio ? "/" : "-", aim.against,
-                       reached(aim, entrants) * (ratio ? 1 : 1e3), ratio ? "" : " ms", aim.at_most ? "most" : "least",
-                       aim.bound * (ratio ? 1 : 1e3), kept(aim, entrants) ? "" : "  MISSED");
 }
 
 void print(const Contest& contest, const std::vector<Entrant>& entrants) {
@@ -60,12 +51,11 @@ void print(const Contest& contest, const std::vector<Entrant>& entrants) {
                    entrant.median() / first, entrant.first_seconds * 1e3, entrant.start_seconds * 1e3,
                    entrant.agrees ? "" : fmt::format("  DIFFERS: {} pairs", entrant.pairs));
     }
-    for (const Aim& aim : contest.aims) fmt::print("{}", aim_text(aim, entrants));
     std::fflush(stdout);
 }
 
 Json contest_json(const Contest& contest, const std::vector<Entrant>& entrants) {
-    Json rows = Json::array(), aims = Json::array();
+    Json rows = Json::array();
     for (const Entrant& entrant : entrants) {
         rows.push_back({{"engine", entrant.engine},
                         {"median_seconds", entrant.median()},
@@ -74,21 +64,11 @@ Json contest_json(const Contest& contest, const std::vector<Entrant>& entrants) 
                         {"agrees", entrant.agrees},
                         {"seconds", entrant.seconds}});
     }
-    for (const Aim& aim : contest.aims) {
-        aims.push_back({{"engine", aim.engine},
-                        {"against", aim.against},
-                        {"measure", measure_name(aim.measure)},
-                        {"at_most", aim.at_most},
-                        {"bound", aim.bound},
-                        {"reached", reached(aim, entrants)},
-                        {"kept", kept(aim, entrants)}});
-    }
     return {{"scene", contest.kind},
             {"objects", contest.objects},
             {"order", order_name(contest.order)},
             {"pairs", entrants.front().pairs},
-            {"rows", rows},
-            {"aims", aims}};
+            {"rows", rows}};
 }
 
 Json run_memory(const Request& request) {

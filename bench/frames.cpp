@@ -7,8 +7,7 @@
 // time. Processor time is more reliable when other programs use the machine. Cases of few objects also show the mean time
 // of a frame's queries for the objects that overlap a box. The case `memory` measures the memory of a scene in separate
 // processes. A tracker is marked, and the exit status is 1, if it finds other pairs than full detection, or other
-// numbers of overlapping objects than the scene. A missed goal does not change the exit status, because times depend on
-// the machine. `--quick` uses a tenth of the frames, and a tenth of the objects, but not fewer than 1,000.
+// numbers of overlapping objects than the scene. `--quick` uses a tenth of the frames, and a tenth of the objects, but not fewer than 1,000.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -42,12 +41,6 @@ struct Request {
     }
 };
 
-std::string statistic_name(Statistic statistic) { return statistic == Statistic::median ? "median" : "slowest"; }
-
-std::string against_name(const Goal& goal) {
-    return goal.against.size() > 1 ? "the fastest peer" : goal.against.front();
-}
-
 std::string remark(const Track& track, unsigned frames) {
     std::string text;
     if (track.seconds.size() < frames) text += fmt::format("  {} frames", track.seconds.size());
@@ -75,12 +68,6 @@ void print(const FrameCase& which, const std::vector<Track>& tracks, const Frame
         fmt::print("  {:<20} {:>10.3f} {:>10.3f}  microseconds a query\n", track.tracker,
                    track.query_quantile(0.5) * 1e6, track.query_quantile(0.99) * 1e6);
     }
-    for (const Goal& goal : which.goals) {
-        const double ratio = reached(goal, tracks);
-        fmt::print("  {} of {} / median of {}: {:.3f} (processor {:.3f}), at most {:.3f}{}\n",
-                   statistic_name(goal.statistic), goal.tracker, against_name(goal), ratio,
-                   reached(goal, tracks, Clock::processor), goal.most, ratio <= goal.most ? "" : "  MISSED");
-    }
     std::fflush(stdout);
 }
 
@@ -104,22 +91,14 @@ Json track_json(const Track& track) {
     return json;
 }
 
-Json goal_json(const Goal& goal, const std::vector<Track>& tracks) {
-    return {{"tracker", goal.tracker},
-            {"statistic", statistic_name(goal.statistic)},
-            {"against", goal.against},
-            {"ratio", reached(goal, tracks)},
-            {"processor_ratio", reached(goal, tracks, Clock::processor)},
-            {"most", goal.most}};
-}
-
 Json case_json(const FrameCase& which, const std::vector<Track>& tracks) {
-    Json rows = Json::array(), goals = Json::array();
+    Json rows = Json::array();
     for (const Track& track : tracks) rows.push_back(track_json(track));
-    for (const Goal& goal : which.goals) goals.push_back(goal_json(goal, tracks));
-    return {{"case", which.name},   {"objects", which.objects},
-            {"share", which.share}, {"threads", which.threads},
-            {"rows", rows},         {"goals", goals}};
+    return {{"case", which.name},
+            {"objects", which.objects},
+            {"share", which.share},
+            {"threads", which.threads},
+            {"rows", rows}};
 }
 
 Json memory_json(const MemoryCase& which, const MemoryUse& use) {

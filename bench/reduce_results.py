@@ -15,13 +15,12 @@ import sys
 
 # Removed keys, by the begin of a file's name. Keys of other files stay.
 REMOVED = {
-    "engines": {"aims", "seconds"},
-    "frames": {"case", "first_seconds", "goals", "processor_seconds", "seconds"},
+    "engines": {"seconds"},
+    "frames": {"case", "first_seconds", "processor_seconds", "seconds"},
     "paper": {"level", "seconds"},
     "peers": {"first_seconds", "hash", "seconds"},
-    "scaling": {"aims", "seconds"},
+    "scaling": {"seconds"},
     "self_intersections": {"seconds"},
-    "service": {"aims"},
 }
 
 

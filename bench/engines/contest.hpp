@@ -14,22 +14,11 @@
 
 namespace octopair::bench {
 
-/// Comparison of the medians of two engines: their ratio, or their difference in seconds.
-enum class Measure : std::uint8_t { ratio, difference };
-
-struct Aim {
-    std::string engine, against;
-    Measure measure = Measure::ratio;
-    bool at_most = true;  ///< false: at least
-    double bound = 1;
-};
-
 struct Contest {
     std::string kind;
     std::uint64_t objects;
     Order order;
     unsigned rounds;
-    std::vector<Aim> aims;
 };
 
 struct Entrant {
@@ -42,10 +31,6 @@ struct Entrant {
 
     double median() const;
 };
-
-/// Returns the quantity that an aim bounds. Throws: std::out_of_range for an unknown engine.
-double reached(const Aim& aim, const std::vector<Entrant>& entrants);
-bool kept(const Aim& aim, const std::vector<Entrant>& entrants);
 
 /// Returns all contests, with `rounds` rounds for large scenes and ten times as many for small scenes.
 std::vector<Contest> contests(unsigned rounds);

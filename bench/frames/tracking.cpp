@@ -110,12 +110,6 @@ double quantile_of(std::vector<double> values, double share) {
     return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
 }
 
-const Track& named(const std::vector<Track>& tracks, const std::string& name) {
-    const auto it = std::find_if(tracks.begin(), tracks.end(), [&](const Track& one) { return one.tracker == name; });
-    if (it == tracks.end()) throw std::out_of_range("no track of " + name);
-    return *it;
-}
-
 }  // namespace
 
 unsigned frames_of(const FrameCase& which, const FramePlan& plan) { return plan.frames * which.frames_factor; }
@@ -126,14 +120,6 @@ double Track::quantile(double share, Clock clock) const {
 }
 
 double Track::query_quantile(double share) const { return quantile_of(query_seconds, share); }
-
-double reached(const Goal& goal, const std::vector<Track>& tracks, Clock clock) {
-    double fastest = named(tracks, goal.against.front()).quantile(0.5, clock);
-    for (const std::string& other : goal.against) {
-        fastest = std::min(fastest, named(tracks, other).quantile(0.5, clock));
-    }
-    return named(tracks, goal.tracker).quantile(goal.statistic == Statistic::median ? 0.5 : 1, clock) / fastest;
-}
 
 std::vector<Track> track(const FrameCase& which, const FramePlan& plan, const TrackingProgress& progress) {
     Motion motion(samples::make_scene("uniform", which.objects, 1), which.share);

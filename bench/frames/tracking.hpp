@@ -41,9 +41,6 @@ struct Track {
     double query_quantile(double share) const;
 };
 
-/// Returns the ratio that a goal bounds. Throws: std::out_of_range for an unknown tracker.
-double reached(const Goal& goal, const std::vector<Track>& tracks, Clock clock = Clock::wall);
-
 /// Receives the step that has just finished.
 using TrackingProgress = std::function<void(std::string_view)>;
 

@@ -27,13 +27,6 @@ std::string row_text(const Contest& contest, const Entrant& entrant) {
     return text + (ratio > 0 ? fmt::format("{:>11.3f}\n", ratio) : "\n");
 }
 
-std::string aim_text(const Contest& contest, const Aim& aim) {
-    const double reached = contest.reached(aim);
-    if (reached == 0) return {};
-    return fmt::format("  {} / {}: {:.3f}, at most {:g}{}\n", setup_text({aim.cores}), setup_text({0, aim.cores}),
-                       reached, aim.most, reached <= aim.most ? "" : "  MISSED");
-}
-
 }  // namespace
 
 std::string setup_text(const Setup& setup) {
@@ -58,11 +51,6 @@ double Contest::against_threads(const Entrant& entrant) const {
     return entrant.setup.local() || threads == nullptr ? 0 : entrant.median() / threads->median();
 }
 
-double Contest::reached(const Aim& aim) const {
-    const Entrant* const ranks = find({aim.cores, 1});
-    return ranks == nullptr ? 0 : against_threads(*ranks);
-}
-
 std::vector<Setup> setups(const std::vector<unsigned>& cores, const std::vector<unsigned>& threads_per_rank) {
     std::vector<Setup> all;
     all.reserve(cores.size() * (1 + threads_per_rank.size()));
@@ -81,12 +69,11 @@ std::string contest_text(const Contest& contest) {
     text += fmt::format("  {:<22}{:>7}{:>13}{:>13}{:>12}{:>10}{:>12}{:>11}\n", "", "cores", "objects", "pairs",
                         "median ms", "speedup", "efficiency", "/ threads");
     for (const Entrant& entrant : contest.entrants) text += row_text(contest, entrant);
-    for (const Aim& aim : aims) text += aim_text(contest, aim);
     return text;
 }
 
 std::string contest_json(const Contest& contest) {
-    Json rows = Json::array(), reached = Json::array();
+    Json rows = Json::array();
     for (const Entrant& entrant : contest.entrants) {
         rows.push_back({{"engine", entrant.setup.local() ? "local" : "mpi"},
                         {"ranks", entrant.setup.ranks},
@@ -100,16 +87,7 @@ std::string contest_json(const Contest& contest) {
                         {"seconds", entrant.seconds}});
         if (const double ratio = contest.against_threads(entrant); ratio > 0) rows.back()["against_threads"] = ratio;
     }
-    for (const Aim& aim : aims) {
-        const double ratio = contest.reached(aim);
-        if (ratio == 0) continue;
-        reached.push_back({{"cores", aim.cores}, {"most", aim.most}, {"reached", ratio}, {"kept", ratio <= aim.most}});
-    }
-    const Json json = {{"scene", contest.scene},
-                       {"objects", contest.objects},
-                       {"weak", contest.weak},
-                       {"rows", rows},
-                       {"aims", reached}};
+    const Json json = {{"scene", contest.scene}, {"objects", contest.objects}, {"weak", contest.weak}, {"rows", rows}};
     return json.dump(2) + '\n';
 }
 

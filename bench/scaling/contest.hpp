@@ -33,13 +33,6 @@ struct Entrant {
     double median() const;
 };
 
-/// Upper bound for the time of ranks over the time of as many threads.
-struct Aim {
-    unsigned cores = 1;
-    double most = 1;
-};
-inline constexpr Aim aims[] = {{1, 1.15}, {2, 1.3}};
-
 /// One scene: all setups take turns on it, round by round.
 struct Contest {
     std::string scene = "uniform";  ///< kind of samples/scenes.hpp, seed 1
@@ -57,8 +50,6 @@ struct Contest {
     /// Returns the time of ranks over the time of the local engine with as many threads; 0 if no entrant has as many
     /// threads.
     double against_threads(const Entrant& entrant) const;
-    /// Returns against_threads() for the ranks of an aim, with one thread each; 0 if there are no such ranks.
-    double reached(const Aim& aim) const;
 };
 
 /// Returns the local engine with each number of threads, then ranks. For each number of threads per rank, ranks cover
