@@ -92,7 +92,7 @@ struct OctantOptions {
 /// Throws: Error{bad_input} with the object and the value for an invalid box, padding or margin; Error{resource_limit} if the memory
 /// does not suffice, or for more than 2^32 - 1 objects; Error{cancelled} within 200 ms after a stop request, unless the list is
 /// complete before.
-/// Complexity: time of the search without its scan, and about 10 ns per entry, divided among the threads. The result has 4 bytes
+/// Complexity: time of the search without its scan, and O(entries), divided among the threads. The result has 4 bytes
 /// per entry, 4 per object and 96 per octant. Until the function returns, it also needs the memory that a search takes for the octree.
 Octants list_octants(const Objects& objects, const OctantOptions& options = {}, std::stop_token stop = {});
 

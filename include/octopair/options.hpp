@@ -26,7 +26,7 @@ struct Options {
     /// its end at the latest.
     /// Throws: Error{engine_failed} that names a wrong or missing pair; Error{usage} on an MPI engine, because no rank has all
     /// objects.
-    /// Complexity: some microseconds per object, divided among the threads; often ten times the call. Memory of this process that
+    /// Complexity: some microseconds per object, divided among the threads; often longer than the call. Memory of this process that
     /// does not depend on the number of pairs (docs/memory.md).
     bool verify = false;
 };

@@ -25,8 +25,8 @@ use a server         ``Engine("unix:PATH")``, :class:`octopair.remote.JobClient`
 use MPI              :func:`mpi_engine` with a communicator of mpi4py
 ===================  ============================================================================
 
-The calls release the GIL. Ctrl-C ends a call within 200 ms; not interrupted are the preparation of a large mesh (1 s per
-million triangles), a single query with very many answers, and Python code in callbacks. In an event loop of asyncio use
+The calls release the GIL. Ctrl-C ends a call within 200 ms; not interrupted are the preparation of a large
+mesh, a single query with very many answers, and Python code in callbacks. In an event loop of asyncio use
 ``await engine.submit(boxes)``. Calls in a process that was forked after octopair was used raise
 :class:`UsageError`; use the start method ``spawn`` of multiprocessing.
 """
