@@ -16,9 +16,9 @@ def git(*words):
 
 
 def checkout():
-    """Returns the last commit and the names of changed files."""
+    """Returns the last commit, with -dirty if files are changed, and the names of these files."""
     changed = [line[3:] for line in git("status", "--porcelain", "--untracked-files=all").splitlines()]
-    return git("rev-parse", "--short=12", "HEAD").strip(), changed
+    return git("rev-parse", "--short=12", "HEAD").strip() + ("-dirty" if changed else ""), changed
 
 
 def machine(build):
@@ -35,7 +35,8 @@ def stamped(name, text, where):
     """Returns the results of a program with their origin. Throws: ValueError if the program names another commit."""
     results = json.loads(text)
     said = results.get("machine", results)
-    if not where["commit"].startswith(said.get("commit", "").removesuffix("-dirty")):
+    commit, changed = re.fullmatch(r"(.*?)(-dirty)?", said.get("commit", "")).groups()
+    if not where["commit"].startswith(commit) or (changed and not where["commit"].endswith(changed)):
         raise ValueError(f"{name}: measured at {said['commit']}, not at {where['commit']}")
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     rest = {key: value for key, value in results.items() if key not in OF_PROGRAMS}

@@ -329,6 +329,12 @@ def next_best(rows):
     return name, rows[name]["median_seconds"]
 
 
+def duration(seconds):
+    """Formats a time with two or three significant digits, in the unit that fits it."""
+    value, unit = (seconds * 1e6, "µs") if seconds < 1e-3 else (seconds * 1e3, "ms") if seconds < 1 else (seconds, "s")
+    return f"{value:.0f} {unit}" if value >= 10 else f"{value:.1f} {unit}"
+
+
 def factor(theirs, ours):
     ratio = theirs / ours
     return f"{ratio:.0f} x" if ratio >= 9.95 else f"{ratio:.1f} x"
@@ -336,14 +342,14 @@ def factor(theirs, ours):
 
 def peers_short(results):
     """Returns three rows: a step of 1,000 bodies that all move, and all pairs of 100,000 and a million boxes, on one thread."""
-    lines = ["| objects, one thread | octopair | next best library | |", "|---|--:|--:|--:|"]
+    lines = ["| objects, one thread | octopair | next best | factor |", "|---|--:|--:|--:|"]
     entries = [("1,000 bodies that all move, a step", "scene", case_rows(results, 1000, 1))]
     entries += [(f"{objects:,} boxes, all pairs", "octopair", scene_rows(results, name, "uniform"))
                 for name, objects in (("100k_1", 100_000), ("1m_1", 1_000_000))]
     for title, ours, rows in entries:
         name, theirs = next_best(rows)
         seconds = rows[ours]["median_seconds"]
-        lines.append(f"| {title} | {milliseconds(seconds)} ms | {milliseconds(theirs)} ms ({name}) | {factor(theirs, seconds)} |")
+        lines.append(f"| {title} | {duration(seconds)} | {duration(theirs)} ({name}) | {factor(theirs, seconds)} |")
     return "\n".join(lines)
 
 
@@ -355,7 +361,7 @@ def small_worlds(results):
     for name in ("scene", "full detection", *(name for name in rows if name not in OURS)):
         row = rows[name]
         title = {"scene": "octopair: `Scene`", "full detection": "octopair: `find_pairs`"}.get(name, name)
-        ratio = "" if name == "scene" else f"{row['median_seconds'] / ours:.1f} x"
+        ratio = "" if name == "scene" else factor(row["median_seconds"], ours)
         lines.append(f"| {title} | {milliseconds(row['median_seconds'])} | {milliseconds(row['percentile99_seconds'])} | {ratio} |")
     return "\n".join(lines)
 
@@ -470,9 +476,9 @@ def python_scipy(results):
 
 def viewer(results):
     """Returns a row for each number of boxes: the first picture of the page."""
-    lines = ["| boxes | drawn at first | first picture, s | MB sent | memory of the tab, MB |", "|--:|--:|--:|--:|--:|"]
+    lines = ["| boxes | first picture, s | MB sent | memory of the tab, MB |", "|--:|--:|--:|--:|"]
     for row in load(results / "viewer.json")["rows"]:
-        lines.append(f"| {row['boxes']:,} | {row['drawn']:,} | {row['milliseconds'] / 1e3:.1f} | {row['megabytes_sent']:.1f} | "
+        lines.append(f"| {row['boxes']:,} | {row['milliseconds'] / 1e3:.1f} | {row['megabytes_sent']:.1f} | "
                      f"{row['megabytes_of_tab']:.0f} |")
     return "\n".join(lines)
 

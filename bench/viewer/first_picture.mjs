@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {parseArgs} from 'node:util';
 import {firstPicture} from '../../tests/viewer/browser/first_picture.mjs';
 import {run} from '../../tests/viewer/browser/program.mjs';
-import {data, launch} from '../../tests/viewer/page/browser.mjs';
+import {launch} from '../../tests/viewer/page/browser.mjs';
 
 const {values, positionals: [program]} = parseArgs({allowPositionals: true, options: {quick: {type: 'boolean'}, json: {type: 'string'}}});
 const median = numbers => numbers.sort((a, b) => a - b)[numbers.length >> 1];
@@ -19,15 +19,13 @@ try {
     const path = join(folder, `${boxes}.npy`);
     run(program, ['generate', 'uniform', '--objects', String(boxes), '--seed', '1', '--output', path, '--quiet']);
     const rounds = [];
-    let drawn = '';
     for (let round = 0; round < (values.quick ? 1 : 5); ++round) {
-      const {page, program: child, close, measured} = await firstPicture(browser, program, path);
-      drawn = await data(page, 'drawn');
+      const {program: child, close, measured} = await firstPicture(browser, program, path);
       rounds.push(measured);
       await close();
       await child.stop();
     }
-    const row = {boxes, drawn: Number(drawn)};
+    const row = {boxes};
     for (const name of Object.keys(rounds[0])) row[name] = median(rounds.map(round => round[name]));
     rows.push(row);
   }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Tests that the measurements in docs/results are reduced, and that the tables of the pages are those of these files."""
+"""Tests that the results in docs/results are reduced and of one commit, and that the tables of the pages are those of these files."""
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -9,7 +10,11 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "docs" / "results"
-PAGES = [ROOT / "docs" / name for name in ("results.md", "engines.md", "scaling.md")]
+sys.path.insert(0, str(ROOT / "bench"))
+import origin
+import tables
+
+ORIGIN = {"commit": "0123456789ab", "compiler": "GNU 12", "cores": 2, "date": "2026-12-01", "processor": "EPYC", "version": "1.0.0"}
 
 
 def run(script, *words):
@@ -27,8 +32,51 @@ class ResultsTest(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_pages_show_the_committed_files(self):
-        done = run("page.py", "--check", RESULTS, *PAGES)
+        done = run("page.py", "--check")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_each_table_is_on_a_page(self):
+        pages = "".join(path.read_text(encoding="utf-8") for path in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
+        self.assertEqual([name for name in tables.BLOCKS if f"<!-- begin {name} -->" not in pages], [])
+
+    def test_committed_files_are_of_a_commit_of_this_repository(self):
+        commit = origin.of(RESULTS / "paper.json")["commit"]
+        self.assertRegex(commit, "^[0-9a-f]{12}$")
+        if (ROOT / ".git").exists() and origin.git("rev-parse", "--is-shallow-repository").strip() == "false":
+            origin.git("merge-base", "--is-ancestor", commit, "HEAD")  # fails with an error
+
+    def origins(self, *others):
+        """Returns the differences of files with ORIGIN and with the origins of `others`."""
+        with tempfile.TemporaryDirectory() as folder:
+            paths = []
+            for number, other in enumerate([ORIGIN, *others]):
+                paths.append(pathlib.Path(folder) / f"{number}.json")
+                paths[-1].write_text(json.dumps({"measured": other} if other else {}), encoding="utf-8")
+            return origin.differences(paths)
+
+    def test_results_of_another_commit_or_machine_are_found(self):
+        self.assertEqual(self.origins({**ORIGIN, "date": "2026-12-02"}), [])
+        self.assertEqual(self.origins({**ORIGIN, "commit": "ba9876543210"}), ["1.json has the commit ba9876543210, 0.json has 0123456789ab"])
+        self.assertEqual(self.origins({**ORIGIN, "processor": "Xeon"}), ["1.json has the processor Xeon, 0.json has EPYC"])
+        self.assertEqual(self.origins(None), ["1.json does not say where it was measured"])
+
+    def test_a_program_of_another_commit_is_refused(self):
+        self.assertEqual(origin.stamped("a", '{"commit": "0123456", "x": 1}', ORIGIN)["x"], 1)
+        with self.assertRaises(ValueError):
+            origin.stamped("a", '{"machine": {"commit": "ba98765"}}', ORIGIN)
+        with self.assertRaises(ValueError):
+            origin.stamped("a", '{"commit": "0123456-dirty"}', ORIGIN)
+
+    def test_a_checkout_with_changes_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            shutil.copytree(ROOT / "bench", root / "bench")
+            for words in (["init", "-q"], ["add", "."], ["-c", "user.name=a", "-c", "user.email=a@b", "commit", "-qm", "a"]):
+                subprocess.run(["git", *words], cwd=root, check=True)
+            (root / "new.txt").write_text("new", encoding="utf-8")
+            done = subprocess.run([sys.executable, root / "bench" / "results", "scenes"], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("the checkout has changes (new.txt)", done.stderr)
 
     def test_another_table_is_found(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
 // Compares octopair's own readers with Assimp, on the models of Debian's package assimp-testmodels: the same vertices and triangles.
-// docs/results.md explains the differences.
+// docs/formats.md explains the differences.
 #include <gtest/gtest.h>
 
 #include <algorithm>
