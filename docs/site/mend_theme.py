@@ -1,8 +1,8 @@
 """Mends what the package furo of Debian 12 lacks, after the pages are written. Other packages of Furo stay as they are.
 
 Script   Its script imports another script. Browsers refuse this in scripts that are no modules, and modules in files.
-Style    Its style sheet has no dark colours for readers whose system is dark. It also imports a style sheet by a path of Debian's file
-         system, which is nowhere on a server or in a folder of pages.
+Style    Its style sheet has no dark colours and shows no dark pictures for readers whose system is dark. It also imports a style sheet by
+         a path of Debian's file system, which is nowhere on a server or in a folder of pages.
 """
 import pathlib
 import re
@@ -28,7 +28,10 @@ def mend_style(folder):
     dark = DARK.search(text)
     if dark and "prefers-color-scheme" not in text:
         # Before the rules that follow, so that they still have the last word.
-        rule = f'@media screen and (prefers-color-scheme: dark) {{\n  body:not([data-theme="light"]) {{{dark[1]}}} }}\n\n'
+        page = 'body:not([data-theme="light"])'
+        rule = (f"@media screen and (prefers-color-scheme: dark) {{\n  {page} {{{dark[1]}}}\n"
+                f"  html {page} .only-light {{ display: none !important; }}\n"
+                f"  html {page} .only-dark {{ display: block !important; }} }}\n\n")
         at = text.index("@media not print")
         text = text[:at] + rule + text[at:]
     path.write_text(text, encoding="utf-8")

@@ -3,10 +3,11 @@
 
     stage.py ROOT XML TARGET     XML: the folder that Doxygen wrote
 
-Copied pages   README.md, docs/*.md and the others of PAGES. They stay as they are, but for links to files that are not
-               pages: those lead to pages that show the file.
+Copied pages   README.md, docs/*.md and the others of PAGES. They stay as they are, but for two things. Links to files that are not
+               pages lead to pages that show the file. An element <picture> with a light and a dark picture becomes two images, of which
+               the theme shows one.
 Generated      api/ (api_pages.py), man/ (man_pages.py), files/ (repository files that a page links)
-Errors         A link to a file that does not exist is an error with the page and its line.
+Errors         A link or a picture whose file does not exist is an error with the page and its line.
 """
 import pathlib
 import posixpath
@@ -18,8 +19,11 @@ import api_pages
 import man_pages
 
 PAGES = ["*.md", "docs/*.md", "docs/adapters/*.md", "docs/tutorials/*.md", "packaging/proxy/README.md"]
-PICTURES = ["docs/images/*.svg", "docs/images/*.png"]
+PICTURES = ["docs/images/*.svg", "docs/images/*.png", "docs/images/*.webp"]
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
+# On GitHub, the picture follows the system. On the site, it also follows the switch of the theme.
+SOURCE = re.compile(r'<source media="\(prefers-color-scheme: dark\)" srcset="([^"]+)">')
+IMAGE = re.compile(r'<img src="([^"]+)"(?: width="\d+")? alt="([^"]*)">')
 FENCE = re.compile(r"^ *(```|~~~)")
 LEXERS = {".hpp": "cpp", ".h": "c", ".cpp": "cpp", ".py": "python", ".json": "json", ".sh": "bash", ".proto": "proto",
           ".toml": "toml", ".c": "c", ".conf": "nginx"}
@@ -32,6 +36,7 @@ class Site:
         self.pages = {str(path.relative_to(root)) for pattern in PAGES for path in root.glob(pattern)}
         self.shown = set()  # repository files and folders that need a page
         self.errors = []
+        self.dark = ""  # dark variant of the <picture> that is read
 
     def write(self, name, text):
         path = self.target / name
@@ -57,12 +62,29 @@ class Site:
             shown = f"files/{name}.md"
         return posixpath.relpath(shown, folder or ".") + hash_sign + anchor
 
+    def picture_line(self, page, place, line):
+        """Returns the text for a line of an element <picture>."""
+        dark, light = SOURCE.search(line), IMAGE.search(line)
+        if dark:
+            self.dark = self.link(page, place, dark[1])
+        elif light:
+            alt = light[2]
+            return "\n".join(f"```{{image}} {path}\n:class: only-{theme}\n:alt: {alt}\n```\n"
+                             for theme, path in (("light", self.link(page, place, light[1])), ("dark", self.dark)))
+        elif line not in ("<picture>", "</picture>"):
+            self.errors.append(f"{page}:{place}: not a line of a <picture> that stage.py knows")
+        return ""
+
     def add_page(self, name, text):
-        lines, inside = [], False
+        lines, inside, in_picture = [], False, False
         for place, line in enumerate(text.split("\n"), 1):
             if FENCE.match(line):
                 inside = not inside
-            if not inside:
+            in_picture = in_picture or (not inside and line == "<picture>")
+            if in_picture:
+                in_picture = line != "</picture>"
+                line = self.picture_line(name, place, line)
+            elif not inside:
                 line = LINK.sub(lambda found: found[1] + self.link(name, place, found[2]) + found[3], line)
             lines.append(line)
         self.write(name, "\n".join(lines))

@@ -39,13 +39,21 @@ def wrong_link(page, target, folder):
     return ""
 
 
+def loaded_by(element):
+    """Yields the addresses that a browser loads for an element."""
+    yield element.get(LOADED.get(element.name, ""), "")
+    # Candidates are divided by commas. After an address, a candidate may have a width or a density.
+    for candidate in element.get("srcset", "").split(","):
+        yield candidate.strip().partition(" ")[0]
+
+
 def complaints_of(page, folder):
     for element in soup(page).find_all(True):
-        loaded = element.get(LOADED.get(element.name, ""), "")
-        if ADDRESS.match(loaded):
-            yield f"{element.name} loads {loaded}"
-        elif loaded and not loaded.startswith("data:"):
-            yield from (f"{loaded}: {wrong}" for wrong in [wrong_link(page, loaded, folder)] if wrong)
+        for loaded in loaded_by(element):
+            if ADDRESS.match(loaded):
+                yield f"{element.name} loads {loaded}"
+            elif loaded and not loaded.startswith("data:"):
+                yield from (f"{loaded}: {wrong}" for wrong in [wrong_link(page, loaded, folder)] if wrong)
         if element.name == "style" or element.get("style"):
             yield from (f"a style loads {found}" for found in IN_CSS.findall(element.get("style") or element.string or ""))
         href = element.get("href", "") if element.name == "a" else ""

@@ -8,7 +8,7 @@ import unittest
 
 RIGHT = """<html><head><link rel="stylesheet" href="style.css?digest=1"><script src="code.js"></script></head><body>
 <h1 id="top">A page</h1><a href="#top">top</a><a href="other.html#part">part</a><a href="https://example.org/">elsewhere</a>
-</body></html>"""
+<picture><source srcset="dark.webp 1x, dark.webp 2x"><img src="light.webp"></picture></body></html>"""
 FAULTS = [
     ("#top\"", "#bottom\"", "#bottom: no such anchor"),
     ("other.html#part", "other.html#none", "other.html#none: no such anchor"),
@@ -17,6 +17,9 @@ FAULTS = [
     ("style.css?digest=1", "https://example.org/style.css", "link loads https://example.org/style.css"),
     ("code.js", "//example.org/code.js", "script loads //example.org/code.js"),
     ("code.js", "none.js", "none.js: no such file"),
+    ("light.webp", "none.webp", "none.webp: no such file"),
+    ("dark.webp 2x", "none.webp 2x", "none.webp: no such file"),
+    ("dark.webp 1x", "https://example.org/dark.webp 1x", "source loads https://example.org/dark.webp"),
     ("<h1 id=\"top\">", "<h1 id=\"top\" style=\"background: url(https://example.org/a.png)\">", "a style loads https://example.org/a.png"),
 ]
 
@@ -27,7 +30,8 @@ def run(page, sheet="p { color: red }"):
         (site / "index.html").write_text(page)
         (site / "other.html").write_text('<h2 id="part">Part</h2>')
         (site / "style.css").write_text(sheet)
-        (site / "code.js").write_text("")
+        for name in ("code.js", "light.webp", "dark.webp"):
+            (site / name).write_text("")
         return subprocess.run([sys.executable, str(pathlib.Path(__file__).parent / "links.py"), folder], capture_output=True, text=True)
 
 
