@@ -18,7 +18,7 @@ import sys
 import api_pages
 import man_pages
 
-PAGES = ["*.md", "docs/*.md", "docs/adapters/*.md", "docs/tutorials/*.md", "packaging/proxy/README.md"]
+PAGES = ["*.md", "docs/*.md", "docs/adapters/*.md", "docs/results/*.md", "docs/tutorials/*.md", "packaging/proxy/README.md"]
 PICTURES = ["docs/images/*.svg", "docs/images/*.png", "docs/images/*.webp"]
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 # On GitHub, the picture follows the system. On the site, it also follows the switch of the theme.
