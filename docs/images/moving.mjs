@@ -10,7 +10,7 @@ const [file, modules, theme, folder] = process.argv.slice(2);
 const {chromium} = createRequire(import.meta.url)(join(resolve(modules), 'playwright-core'));
 
 // Target, distance, yaw and pitch of the camera: the part `at` of a link.
-const camera = [0, 0, -0.1, 2.2, -0.9, 0.5].join('_');
+const camera = [0.11, -0.139, -0.1, 1.93, -0.9, 0.5].join('_');
 const hidden = ['bar', 'time', 'side', 'options', 'corner', 'notices', 'overview', 'message'].map(id => `#${id}`).join();
 const style = `
   ${hidden} { display: none !important; }
@@ -20,7 +20,7 @@ const style = `
 const args = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-dev-shm-usage'];
 if (process.getuid() === 0) args.push('--no-sandbox');
 const browser = await chromium.launch({executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args});
-const viewport = {width: 800, height: 400};
+const viewport = {width: 800, height: 380};
 const page = await browser.newPage({viewport, deviceScaleFactor: 2, colorScheme: theme, reducedMotion: 'reduce'});
 await page.goto(`${pathToFileURL(resolve(file))}#at=${camera}&frame=1`);
 await page.waitForFunction(() => document.documentElement.dataset.complete === 'true', null, {timeout: 60_000});

@@ -13,10 +13,10 @@ import sys
 
 import numpy as np
 
-FRAMES, MILLISECONDS = 60, 66
+FRAMES, MILLISECONDS = 48, 84
 WIDTH = 800
 SECTORS, BOXES = 5, 48  # boxes in a sector
-QUALITY = 36
+QUALITY = 33
 
 
 def make_scene():
