@@ -341,10 +341,10 @@ def factor(theirs, ours):
 
 
 def peers_short(results):
-    """Returns three rows: a step of 1,000 bodies that all move, and all pairs of 100,000 and a million boxes, on one thread."""
+    """Returns three rows: a step of 1,000 bodies that all move, and all pairs of 100,000 and a million boxes in the default order."""
     lines = ["| objects, one thread | octopair | next best | factor |", "|---|--:|--:|--:|"]
     entries = [("1,000 bodies that all move, a step", "scene", case_rows(results, 1000, 1))]
-    entries += [(f"{objects:,} boxes, all pairs", "octopair", scene_rows(results, name, "uniform"))
+    entries += [(f"{objects:,} uniform boxes, all pairs", "octopair ascending", scene_rows(results, name, "uniform"))
                 for name, objects in (("100k_1", 100_000), ("1m_1", 1_000_000))]
     for title, ours, rows in entries:
         name, theirs = next_best(rows)
@@ -367,16 +367,16 @@ def small_worlds(results):
 
 
 def peers_summary(results):
-    """Returns a row for each number of objects and scene: octopair, and the fastest library."""
-    lines = ["| all pairs, one thread | octopair, ms | next best library | ms | |", "|---|--:|---|--:|--:|"]
+    """Returns a row for each number of objects and scene: octopair in octal and in ascending order, and the fastest library."""
+    lines = ["| all pairs, one thread | octopair, ms | in ascending order | next best library, ms | / ascending |", "|---|--:|--:|--:|--:|"]
     for name, objects in (("10k_1", 10_000), ("100k_1", 100_000), ("1m_1", 1_000_000)):
         for result in load(results / f"peers_{name}.json")["results"]:
             if result["scene"] in ("uniform", "dense", "clustered"):
                 rows = scene_rows(results, name, result["scene"])
                 library, theirs = next_best(rows)
-                ours = rows["octopair"]["median_seconds"]
-                lines.append(f"| {objects:,}, {result['scene']} | {milliseconds(ours)} | {library} | {milliseconds(theirs)} | "
-                             f"{factor(theirs, ours)} |")
+                octal, ascending = (rows[name]["median_seconds"] for name in ("octopair", "octopair ascending"))
+                lines.append(f"| {objects:,}, {result['scene']} | {milliseconds(octal)} | {milliseconds(ascending)} | "
+                             f"{milliseconds(theirs)} ({library}) | {factor(theirs, ascending)} |")
     return "\n".join(lines)
 
 
